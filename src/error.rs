@@ -1,0 +1,66 @@
+//! What can go wrong, as one opaque type with predicates.
+//!
+//! The reasons are few and a caller acts on two of them only: input that a
+//! person has to mend ([`Error::is_input`]) and anything else. Messages name
+//! the place, what was found, what was expected, and the mend.
+
+use std::fmt;
+
+/// An error of couloir.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Error {
+    kind: Kind,
+    message: String,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Input,
+    Inference,
+    System,
+}
+
+/// A result with couloir's error.
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+impl Error {
+    /// Input that somebody has to mend: a file, a key, an argument.
+    pub fn input(message: impl Into<String>) -> Self {
+        Self { kind: Kind::Input, message: message.into() }
+    }
+
+    /// An inference that could not be carried out as asked.
+    pub fn inference(message: impl Into<String>) -> Self {
+        Self { kind: Kind::Inference, message: message.into() }
+    }
+
+    /// The machine refused: a file could not be written, say.
+    pub fn system(message: impl Into<String>) -> Self {
+        Self { kind: Kind::System, message: message.into() }
+    }
+
+    /// The same error with the place put before its message.
+    #[must_use]
+    pub fn within(mut self, place: impl fmt::Display) -> Self {
+        self.message = format!("{place}: {}", self.message);
+        self
+    }
+
+    /// Whether the input has to be mended.
+    pub fn is_input(&self) -> bool {
+        self.kind == Kind::Input
+    }
+
+    /// Whether an inference failed.
+    pub fn is_inference(&self) -> bool {
+        self.kind == Kind::Inference
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Error {}
