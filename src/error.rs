@@ -64,3 +64,22 @@ impl fmt::Display for Error {
 }
 
 impl std::error::Error for Error {}
+
+/// Why the evaluation of a model stopped short of a density.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Stop {
+    /// For these parameter values there is no such flow or noise: the
+    /// density is zero, and the case is counted.
+    Reject(&'static str),
+    /// Something is wrong that other values would not mend: the run ends.
+    Fail(Error),
+}
+
+impl From<Error> for Stop {
+    fn from(error: Error) -> Self {
+        Self::Fail(error)
+    }
+}
+
+/// What the body of a model returns.
+pub type Outcome = std::result::Result<(), Stop>;

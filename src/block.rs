@@ -1,0 +1,67 @@
+//! Blocks: friction laws and noises as named parts with named parameters.
+//!
+//! A block is a plain struct whose fields are numbers. [`Block`] says its
+//! name, its fields with units and default priors, and how to build it from
+//! values; that is all the language and the command need to know of it.
+
+use smallvec::SmallVec;
+
+/// The values of a parameter that is a list or a vector; up to eight without
+/// touching the heap.
+pub type List<S> = SmallVec<[S; 8]>;
+
+/// One field of a block.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Field {
+    /// Its name, also in event files.
+    pub name: &'static str,
+    /// Its unit; "1" for a pure number.
+    pub unit: &'static str,
+    /// The prior used where a user gives none, as event files write it.
+    pub prior: &'static str,
+    /// Whether it is a list of values, each with that prior.
+    pub list: bool,
+}
+
+impl Field {
+    /// A field with one value.
+    pub const fn new(
+        name: &'static str,
+        unit: &'static str,
+        prior: &'static str,
+    ) -> Self {
+        Self { name, unit, prior, list: false }
+    }
+
+    /// A field with a list of values.
+    pub const fn list(
+        name: &'static str,
+        unit: &'static str,
+        prior: &'static str,
+    ) -> Self {
+        Self { name, unit, prior, list: true }
+    }
+}
+
+/// A named part of a model whose fields are numbers of type `S`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a block",
+    label = "this has no `Block`: it cannot stand on the right of `~`",
+    note = "a friction law or a noise is a block: give the struct `impl<S> \
+            Block<S> for ..` with its name and fields"
+)]
+pub trait Block<S>: Sized {
+    /// Its name in event files, such as "coulomb".
+    const NAME: &'static str;
+    /// Its fields, in the order of `from_values`.
+    const FIELDS: &'static [Field];
+
+    /// The block with the given values, one per field; a list field takes as
+    /// many as are left over.
+    fn from_values(values: &[S]) -> Self;
+
+    /// The unit of the field `name`; "1" where there is none of that name.
+    fn unit(name: &str) -> &'static str {
+        Self::FIELDS.iter().find(|f| f.name == name).map_or("1", |f| f.unit)
+    }
+}

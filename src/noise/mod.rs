@@ -1,0 +1,63 @@
+//! Noise: how recorded values scatter about the motion.
+//!
+//! A noise is a distribution of the residuals r = recorded - predicted. All
+//! of them are walked in one way, value after value, each given those before
+//! it; likelihood, pointwise likelihood and standardised innovations are
+//! three listeners to that walk.
+
+mod grid;
+mod iid;
+
+pub use grid::{Grid, Spacing};
+pub use iid::Iid;
+
+use crate::error::Stop;
+use crate::scalar::{Kind, Real};
+use crate::seed::Rng;
+
+/// One residual given all before it.
+#[derive(Debug, Clone, Copy)]
+pub struct Conditional<K: Kind> {
+    /// ln p(r_i | r_1 .. r_(i-1)).
+    pub log_density: Real<K>,
+    /// The innovation, transformed to a standard normal deviate under the
+    /// noise.
+    pub innovation: f64,
+}
+
+/// A distribution of residuals.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a noise",
+    label = "the last summand behind `~` has to be a noise block, such as \
+             `errors` declared by `errors ~ Iid {{ .. }};`"
+)]
+pub trait Noise<K: Kind> {
+    /// Whether this noise is defined at those times; an input error that
+    /// names the mend where it is not.
+    fn check(&self, at: &Grid) -> crate::Result<()>;
+
+    /// Visits the residuals in order, each given those before it.
+    ///
+    /// `Err(Stop::Reject)` where no such noise exists for these parameters
+    /// (a variance below 0, an AR that is not stationary).
+    fn walk(
+        &self,
+        at: &Grid,
+        residuals: &[Real<K>],
+        visit: &mut dyn FnMut(Conditional<K>),
+    ) -> Result<(), Stop>;
+
+    /// Draws residuals, one per time.
+    fn draw(&self, at: &Grid, rng: &mut Rng) -> Result<Vec<f64>, Stop>;
+
+    /// The log likelihood of the residuals.
+    fn log_likelihood(
+        &self,
+        at: &Grid,
+        residuals: &[Real<K>],
+    ) -> Result<Real<K>, Stop> {
+        let mut total = Real::new(0.0);
+        self.walk(at, residuals, &mut |value| total += value.log_density)?;
+        Ok(total)
+    }
+}

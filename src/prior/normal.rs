@@ -1,0 +1,59 @@
+//! The normal distribution.
+
+use rand_distr::{Distribution, StandardNormal};
+use statrs::distribution::ContinuousCDF;
+
+use super::{Prior, Support};
+use crate::scalar::{Kind, Real};
+use crate::seed::Rng;
+
+/// ln sqrt(2 pi).
+pub(crate) const LN_SQRT_2PI: f64 = 0.918_938_533_204_672_8;
+
+/// Normal(mean, sd): p(x) = exp(-(x - mean)^2 / (2 sd^2)) / (sd sqrt(2 pi)).
+///
+/// ```
+/// use couloir::prior::{Normal, Prior};
+/// use couloir::scalar::{Plain, Real};
+/// let prior = Normal::<Plain>::new(1.0, 2.0);
+/// assert!((prior.log_density(Real::new(1.0)).value() + 1.6120857).abs() < 1e-7);
+/// assert!((prior.quantile(0.975).unwrap() - 4.919928).abs() < 1e-6);
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct Normal<K: Kind> {
+    mean: Real<K>,
+    sd: Real<K>,
+}
+
+impl<K: Kind> Normal<K> {
+    /// From its mean and standard deviation.
+    #[inline]
+    pub fn new(mean: impl Into<Real<K>>, sd: impl Into<Real<K>>) -> Self {
+        Self { mean: mean.into(), sd: sd.into() }
+    }
+}
+
+impl<K: Kind> Prior<K> for Normal<K> {
+    #[inline]
+    fn log_density(&self, x: Real<K>) -> Real<K> {
+        if !(self.sd > 0.0) {
+            return Real::new(f64::NEG_INFINITY);
+        }
+        let deviate = (x - self.mean) / self.sd;
+        -0.5 * deviate * deviate - self.sd.ln() - LN_SQRT_2PI
+    }
+
+    fn support(&self) -> Support<K> {
+        Support::Line
+    }
+
+    fn quantile(&self, p: f64) -> Option<f64> {
+        let z = statrs::distribution::Normal::standard().inverse_cdf(p);
+        Some(self.mean.value() + self.sd.value() * z)
+    }
+
+    fn draw(&self, rng: &mut Rng) -> Option<f64> {
+        let z: f64 = StandardNormal.sample(rng);
+        Some(self.mean.value() + self.sd.value() * z)
+    }
+}
