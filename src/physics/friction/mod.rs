@@ -21,7 +21,7 @@ pub use cohesion::Cohesion;
 pub use coulomb::Coulomb;
 pub use curvature::Curvature;
 pub use entrainment::Entrainment;
-pub use law::{Law, LawSum, Laws, RateOf};
+pub use law::{Law, LawKind, LawSum, Laws, RateOf, Valued};
 pub use pcm::Pcm;
 pub use sum::Sum;
 pub use turbulent::Turbulent;
