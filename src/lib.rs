@@ -1,6 +1,4 @@
 //! couloir
-#[macro_use]
-pub mod scalar;
 pub mod block;
 pub mod context;
 pub mod declared;
@@ -10,6 +8,7 @@ pub mod noise;
 pub mod observe;
 pub mod physics;
 pub mod prior;
+pub mod scalar;
 pub mod seed;
 
 pub use declared::Declared;

@@ -152,7 +152,7 @@ impl<const N: usize> Kind for Grad<N> {
     ) -> Dual<N> {
         let mut partials = [0.0; N];
         for (i, p) in partials.iter_mut().enumerate() {
-            *p = slope_x * x.partials[i] + slope_y * y.partials[i];
+            *p = fused(slope_x, x.partials[i], slope_y * y.partials[i]);
         }
         Dual { value, partials }
     }
@@ -449,7 +449,7 @@ operator!(
     div_assign,
     |x, y| x / y,
     1.0 / y,
-    -x / (y * y)
+    -(x / y) * (1.0 / y)
 );
 operator!(
     Rem,
@@ -518,21 +518,10 @@ impl<T> Arithmetic for T where
 {
 }
 
-/// Horner's scheme: c\[0\] + x (c\[1\] + x (c\[2\] + ...)).
+/// a b + c, in one rounding where the machine does that in one step.
 #[inline(always)]
-pub fn polynomial<S: Arithmetic>(x: S, coefficients: &[f64]) -> S {
-    coefficients.iter().rev().fold(S::zero(), |sum, &c| sum * x + c)
-}
-
-/// Runs a macro once for every number kind that models are evaluated with.
-#[macro_export]
-#[doc(hidden)]
-macro_rules! for_each_gradient_width {
-    ($call:ident) => {
-        $call!(2);
-        $call!(4);
-        $call!(8);
-    };
+pub fn fused(a: f64, b: f64, c: f64) -> f64 {
+    if cfg!(target_feature = "fma") { a.mul_add(b, c) } else { a * b + c }
 }
 
 #[cfg(test)]

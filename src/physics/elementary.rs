@@ -5,7 +5,7 @@
 //! series serves there, the closed form elsewhere. The bound of each series
 //! is set so that the first term left out is below 1e-16 of the value.
 
-use crate::scalar::{Kind, Real, polynomial};
+use crate::scalar::{Kind, Real, fused};
 
 /// atanh(sqrt z)/sqrt z = sum z^n/(2n+1); atan for z < 0. z < 1.
 #[inline(always)]
@@ -22,12 +22,18 @@ pub(crate) fn atanhc<K: Kind>(z: Real<K>) -> Real<K> {
     z.chain(value, slope)
 }
 
+/// Horner's scheme.
+#[inline(always)]
+fn polynomial<const N: usize>(x: f64, coefficients: &[f64; N]) -> f64 {
+    head::<N>(x, coefficients)
+}
+
 /// The first `N` terms of a power series, where x is too small for more.
 #[inline(always)]
 fn head<const N: usize>(x: f64, coefficients: &[f64]) -> f64 {
     let mut sum = coefficients[N - 1];
     for n in (0..N - 1).rev() {
-        sum = sum * x + coefficients[n];
+        sum = fused(sum, x, coefficients[n]);
     }
     sum
 }
