@@ -1,6 +1,7 @@
 //! couloir
 #[macro_use]
 pub mod scalar;
+pub mod draws;
 pub mod error;
 pub mod seed;
 pub use error::{Error, Result};
