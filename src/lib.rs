@@ -2,6 +2,7 @@
 pub mod block;
 pub mod context;
 pub mod declared;
+pub mod draws;
 pub mod error;
 pub mod model;
 pub mod noise;

@@ -257,6 +257,18 @@ impl<K: Kind> Real<K> {
         self.chain(x.powf(p), p * x.powf(p - 1.0))
     }
 
+    /// c\[0\] + x c\[1\] + x^2 c\[2\] + ... at x = self.
+    #[inline(always)]
+    pub fn polynomial(self, coefficients: &[f64]) -> Self {
+        let x = self.value();
+        let (mut value, mut slope) = (0.0, 0.0);
+        for &c in coefficients.iter().rev() {
+            slope = fused(slope, x, value);
+            value = fused(value, x, c);
+        }
+        self.chain(value, slope)
+    }
+
     /// Sine.
     #[inline(always)]
     pub fn sin(self) -> Self {
@@ -522,6 +534,14 @@ impl<T> Arithmetic for T where
 #[inline(always)]
 pub fn fused(a: f64, b: f64, c: f64) -> f64 {
     if cfg!(target_feature = "fma") { a.mul_add(b, c) } else { a * b + c }
+}
+
+/// Horner's scheme: c\[0\] + x (c\[1\] + x (c\[2\] + ...)).
+#[inline(always)]
+pub fn polynomial(x: f64, coefficients: &[f64]) -> f64 {
+    let mut terms = coefficients.iter().rev();
+    let Some(&last) = terms.next() else { return 0.0 };
+    terms.fold(last, |sum, &c| fused(sum, x, c))
 }
 
 #[cfg(test)]
