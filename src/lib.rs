@@ -5,6 +5,7 @@ pub mod block;
 pub mod context;
 pub mod declared;
 pub mod error;
+pub mod io;
 pub mod model;
 pub mod noise;
 pub mod observe;
