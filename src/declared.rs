@@ -14,9 +14,9 @@ use crate::seed::Rng;
 
 /// A block declared by a model, with the context it is evaluated in.
 #[derive(Debug)]
-pub struct Declared<'r, K: Kind, B> {
-    block: B,
+pub struct Declared<'r, K: Kind, B: ?Sized> {
     context: &'r Context<K>,
+    block: B,
 }
 
 impl<'r, K: Kind, B> Declared<'r, K, B> {
@@ -45,31 +45,42 @@ impl<K: Kind, B> Deref for Declared<'_, K, B> {
     }
 }
 
-impl<K: Kind, N: Noise<K>> Noise<K> for Declared<'_, K, N> {
-    fn check(&self, at: &Grid) -> crate::Result<()> {
-        self.block.check(at)
-    }
-
-    #[inline]
-    fn walk(
-        &self,
-        at: &Grid,
-        residuals: &[Real<K>],
-        visit: &mut dyn FnMut(Conditional<K>),
-    ) -> Result<(), Stop> {
-        self.block.walk(at, residuals, visit)
-    }
-
-    fn draw(&self, at: &Grid, rng: &mut Rng) -> Result<Vec<f64>, Stop> {
-        self.block.draw(at, rng)
-    }
-
-    #[inline]
-    fn log_likelihood(
-        &self,
-        at: &Grid,
-        residuals: &[Real<K>],
-    ) -> Result<Real<K>, Stop> {
-        self.block.log_likelihood(at, residuals)
-    }
+/// A declared noise scores as its block does, and so does a borrowed one.
+macro_rules! score_like {
+    ($noise:ident, $self:ident, $inner:expr, $of:ty) => {
+        impl<K: Kind, $noise: Noise<K> + ?Sized> Noise<K> for $of {
+            fn check(&$self, at: &Grid) -> crate::Result<()> {
+                $inner.check(at)
+            }
+            #[inline]
+            fn walk(
+                &$self,
+                at: &Grid,
+                residuals: &[Real<K>],
+                visit: &mut dyn FnMut(Conditional<K>),
+            ) -> Result<(), Stop> {
+                $inner.walk(at, residuals, visit)
+            }
+            fn draw(
+                &$self,
+                at: &Grid,
+                rng: &mut Rng,
+            ) -> Result<Vec<f64>, Stop> {
+                $inner.draw(at, rng)
+            }
+            #[inline]
+            fn log_likelihood(
+                &$self,
+                at: &Grid,
+                residuals: &[Real<K>],
+            ) -> Result<Real<K>, Stop> {
+                $inner.log_likelihood(at, residuals)
+            }
+            fn standardise(&$self, deviate: f64) -> f64 {
+                $inner.standardise(deviate)
+            }
+        }
+    };
 }
+score_like!(N, self, (**self), &N);
+score_like!(N, self, self.block, Declared<'_, K, N>);

@@ -4,6 +4,7 @@ pub mod context;
 pub mod declared;
 pub mod draws;
 pub mod error;
+pub mod infer;
 pub mod io;
 pub mod model;
 pub mod noise;

@@ -12,7 +12,7 @@ use crate::seed::Rng;
 #[derive(Clone, Copy)]
 pub struct Declaration<'a, K: Kind> {
     /// Its name and unit.
-    pub label: &'a Label,
+    pub label: &'a Label<'a>,
     /// Its value in this run.
     pub value: f64,
     /// Its prior, given the parameters above it.

@@ -6,12 +6,16 @@
 //! same run with another listener. [`Model`] is the object-safe face of a
 //! program; every program has it.
 
+mod assembled;
 mod listener;
 mod number;
+mod posterior;
 mod program;
 mod run;
 
+pub use assembled::Assembled;
 pub use listener::{Collected, Collector, Declaration, Listener, Replicates};
 pub use number::Number;
+pub use posterior::{Cost, Parameter, Posterior};
 pub use program::{Density, Model, Point, Program, Weights};
 pub use run::{Label, Run};

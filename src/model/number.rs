@@ -4,11 +4,12 @@
 //! widths of gradient. More parameters than the widest take several passes.
 
 use crate::context::Context;
+use crate::noise::NoiseKind;
 use crate::physics::friction::LawKind;
 use crate::scalar::{Grad, Kind, Plain};
 
 /// A kind of number with a home for its buffers on every thread.
-pub trait Number: Kind + LawKind {
+pub trait Number: Kind + LawKind + NoiseKind {
     /// Runs `work` with this thread's context for this kind.
     fn with_context<R>(work: impl FnOnce(&Context<Self>) -> R) -> R;
 }

@@ -17,15 +17,15 @@ use crate::seed::Rng;
 
 /// The name and unit of a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Label {
-    name: &'static str,
-    unit: &'static str,
+pub struct Label<'a> {
+    name: &'a str,
+    unit: &'a str,
     index: Option<usize>,
 }
 
-impl Label {
+impl<'a> Label<'a> {
     /// A parameter of this name; unit "1" for a pure number.
-    pub const fn new(name: &'static str, unit: &'static str) -> Self {
+    pub const fn new(name: &'a str, unit: &'a str) -> Self {
         Self { name, unit, index: None }
     }
 
@@ -44,7 +44,7 @@ impl Label {
     }
 
     /// Its unit.
-    pub fn unit(&self) -> &'static str {
+    pub fn unit(&self) -> &'a str {
         self.unit
     }
 }
@@ -105,7 +105,7 @@ impl<'r, K: Kind> Run<'r, K> {
     #[inline]
     pub fn scalar<P: Prior<K>>(
         &mut self,
-        label: Label,
+        label: Label<'_>,
         prior: P,
     ) -> Result<Real<K>, Stop> {
         let x = self.value(&prior)?;
@@ -155,7 +155,7 @@ impl<'r, K: Kind> Run<'r, K> {
     /// As [`Run::scalar`].
     pub fn vector<P: Prior<K>>(
         &mut self,
-        label: Label,
+        label: Label<'_>,
         n: usize,
         prior: P,
     ) -> Result<List<Real<K>>, Stop> {

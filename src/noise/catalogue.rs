@@ -43,6 +43,23 @@ pub trait NoiseEntry:
     fn parameters(&self) -> Vec<(String, Field)>;
 }
 
+/// Kinds that a named noise can be built with.
+pub trait NoiseKind: Kind {
+    /// The noise's builder for this kind of number.
+    fn noise(entry: &dyn NoiseEntry) -> &dyn NoiseFor<Self>;
+}
+
+macro_rules! noise_kind {
+    ($($kind:ty),*) => {
+        $(impl NoiseKind for $kind {
+            fn noise(entry: &dyn NoiseEntry) -> &dyn NoiseFor<Self> {
+                entry
+            }
+        })*
+    };
+}
+noise_kind!(Plain, Grad<2>, Grad<4>, Grad<8>);
+
 /// Lists the noises: each is one entry here and one file.
 macro_rules! catalogue {
     ($($noise:ident),* $(,)?) => {

@@ -15,7 +15,7 @@ mod student;
 mod tests;
 
 pub use ar::Ar;
-pub use catalogue::{NoiseEntry, NoiseFor, names, parse};
+pub use catalogue::{NoiseEntry, NoiseFor, NoiseKind, names, parse};
 pub use grid::{Grid, Spacing};
 pub use iid::Iid;
 pub use student::Student;

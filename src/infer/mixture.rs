@@ -1,0 +1,285 @@
+//! A mixture of multivariate Student-t distributions, fitted to draws.
+//!
+//! The proposal of importance sampling and the second start of sequential
+//! Monte Carlo: heavier in the tails than what it is fitted to, and with a
+//! share of the prior's own draws so that no place is out of reach.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use rand::RngExt;
+use rand_distr::{ChiSquared, Distribution, StandardNormal};
+use statrs::function::gamma::ln_gamma;
+
+use super::log_sum_exp;
+use crate::seed::Rng;
+
+/// Degrees of freedom of each component: heavy enough to bound the weights
+/// of a posterior whose tails are those of its prior.
+const FREEDOM: f64 = 5.0;
+
+/// How much wider than the draws each component is made, in variance.
+const INFLATION: f64 = 1.3;
+
+/// A mixture of Student-t components on the real line.
+#[derive(Debug, Clone)]
+pub struct Mixture {
+    components: Vec<Component>,
+}
+
+#[derive(Debug, Clone)]
+struct Component {
+    log_weight: f64,
+    mean: DVector<f64>,
+    shape: Cholesky<f64, Dyn>,
+    log_constant: f64,
+}
+
+impl Component {
+    fn new(
+        weight: f64,
+        mean: DVector<f64>,
+        covariance: &DMatrix<f64>,
+    ) -> Option<Self> {
+        let n = mean.len() as f64;
+        let shape = Cholesky::new(nudged(covariance))?;
+        let log_det = 2.0 * shape.l().diagonal().map(f64::ln).sum();
+        let log_constant = ln_gamma(0.5 * (FREEDOM + n))
+            - ln_gamma(0.5 * FREEDOM)
+            - 0.5 * n * (FREEDOM * std::f64::consts::PI).ln()
+            - 0.5 * log_det;
+        Some(Self { log_weight: weight.ln(), mean, shape, log_constant })
+    }
+
+    /// The squared distance from the mean, in units of the shape.
+    fn distance(&self, z: &DVector<f64>) -> f64 {
+        let mut d = z - &self.mean;
+        self.shape.l_dirty().solve_lower_triangular_mut(&mut d);
+        d.norm_squared()
+    }
+
+    fn log_density(&self, z: &DVector<f64>) -> f64 {
+        let n = self.mean.len() as f64;
+        self.log_weight + self.log_constant
+            - 0.5 * (FREEDOM + n) * (self.distance(z) / FREEDOM).ln_1p()
+    }
+}
+
+/// A covariance made surely positive definite.
+fn nudged(covariance: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut c = covariance.clone();
+    let trace = c.trace().max(1e-12) / c.nrows() as f64;
+    for i in 0..c.nrows() {
+        c[(i, i)] = c[(i, i)] * (1.0 + 1e-9) + 1e-9 * trace;
+    }
+    c
+}
+
+impl Mixture {
+    /// Fits as many components, up to `most`, as lower the Bayesian
+    /// information criterion of weighted draws (rows on the real line).
+    /// `None` where not even one can be fitted.
+    pub fn fit(
+        draws: &[Vec<f64>],
+        weights: &[f64],
+        most: usize,
+        rng: &mut Rng,
+    ) -> Option<Self> {
+        let points: Vec<DVector<f64>> =
+            draws.iter().map(|z| DVector::from_column_slice(z)).collect();
+        let effective = 1.0 / weights.iter().map(|w| w * w).sum::<f64>();
+        let mut best: Option<(f64, Self)> = None;
+        for count in 1..=most {
+            let Some(fitted) = expectation_maximisation(
+                &points, weights, count, rng,
+            ) else {
+                continue;
+            };
+            let score = fitted.criterion(&points, weights, effective);
+            if best.as_ref().is_none_or(|(lowest, _)| score < *lowest) {
+                best = Some((score, fitted));
+            }
+        }
+        best.and_then(|(_, fitted)| fitted.inflated())
+    }
+
+    fn criterion(
+        &self,
+        points: &[DVector<f64>],
+        weights: &[f64],
+        effective: f64,
+    ) -> f64 {
+        let n = points[0].len() as f64;
+        let count = self.components.len() as f64;
+        let unknowns = count * (1.0 + n + 0.5 * n * (n + 1.0)) - 1.0;
+        let fit: f64 = points
+            .iter()
+            .zip(weights)
+            .map(|(z, w)| w * self.log_density_at(z))
+            .sum();
+        -2.0 * effective * fit + unknowns * effective.ln()
+    }
+
+    fn inflated(&self) -> Option<Self> {
+        let wide = |c: &Component| {
+            let covariance = c.shape.l() * c.shape.l().transpose() * INFLATION;
+            Component::new(c.log_weight.exp(), c.mean.clone(), &covariance)
+        };
+        let components =
+            self.components.iter().map(wide).collect::<Option<_>>()?;
+        Some(Self { components })
+    }
+
+    /// How many components it has.
+    pub fn components(&self) -> usize {
+        self.components.len()
+    }
+
+    /// The log density at a place on the real line.
+    pub fn log_density(&self, z: &[f64]) -> f64 {
+        self.log_density_at(&DVector::from_column_slice(z))
+    }
+
+    fn log_density_at(&self, z: &DVector<f64>) -> f64 {
+        log_sum_exp(self.components.iter().map(|c| c.log_density(z)))
+    }
+
+    /// One draw, a place on the real line.
+    pub fn draw(&self, rng: &mut Rng) -> Vec<f64> {
+        let mut u: f64 = rng.random();
+        let mut chosen = &self.components[0];
+        for component in &self.components {
+            chosen = component;
+            u -= component.log_weight.exp();
+            if u < 0.0 {
+                break;
+            }
+        }
+        let n = chosen.mean.len();
+        let normal = DVector::from_fn(n, |_, _| StandardNormal.sample(rng));
+        let shrink = match ChiSquared::new(FREEDOM) {
+            Ok(law) => (FREEDOM / law.sample(rng)).sqrt(),
+            Err(_) => 1.0,
+        };
+        let step = chosen.shape.l() * normal * shrink;
+        (&chosen.mean + step).as_slice().to_vec()
+    }
+}
+
+/// Fits a mixture by expectation-maximisation for t components (Peel,
+/// McLachlan 2000), from centres drawn far apart.
+fn expectation_maximisation(
+    points: &[DVector<f64>],
+    weights: &[f64],
+    count: usize,
+    rng: &mut Rng,
+) -> Option<Mixture> {
+    let (mean, covariance) = moments(points, weights)?;
+    let whole = Component::new(1.0, mean, &covariance)?;
+    let centres = far_apart(points, weights, &whole, count, rng);
+    let narrow = &covariance / (count as f64).powi(2);
+    let mut components: Vec<Component> = centres
+        .into_iter()
+        .map(|m| Component::new(1.0 / count as f64, m, &narrow))
+        .collect::<Option<_>>()?;
+    let rounds = if count == 1 { 10 } else { 60 };
+    for _ in 0..rounds {
+        components = maximise(points, weights, &components)?;
+    }
+    Some(Mixture { components })
+}
+
+/// One round: responsibilities, then weighted moments of each component.
+fn maximise(
+    points: &[DVector<f64>],
+    weights: &[f64],
+    components: &[Component],
+) -> Option<Vec<Component>> {
+    let n = points.first()?.len();
+    let mut totals = vec![0.0; components.len()];
+    let mut masses = totals.clone();
+    let mut means = vec![DVector::zeros(n); components.len()];
+    let mut squares = vec![DMatrix::zeros(n, n); components.len()];
+    for (z, w) in points.iter().zip(weights).filter(|(_, w)| **w > 0.0) {
+        let logs: Vec<f64> =
+            components.iter().map(|c| c.log_density(z)).collect();
+        let total = log_sum_exp(logs.iter().copied());
+        for (k, component) in components.iter().enumerate() {
+            let share = w * (logs[k] - total).exp();
+            // The t's latent precision, given the point.
+            let precision =
+                (FREEDOM + n as f64) / (FREEDOM + component.distance(z));
+            totals[k] += share;
+            masses[k] += share * precision;
+            means[k].axpy(share * precision, z, 1.0);
+            squares[k].ger(share * precision, z, z, 1.0);
+        }
+    }
+    (0..components.len())
+        .map(|k| {
+            if totals[k] < 1e-3 {
+                return None;
+            }
+            let mean = &means[k] / masses[k];
+            let second = &squares[k] / totals[k];
+            let outer =
+                &mean * mean.transpose() * (masses[k] / totals[k]);
+            Component::new(totals[k], mean, &(second - outer))
+        })
+        .collect()
+}
+
+fn moments(
+    points: &[DVector<f64>],
+    weights: &[f64],
+) -> Option<(DVector<f64>, DMatrix<f64>)> {
+    let n = points.first()?.len();
+    let mut mean = DVector::zeros(n);
+    for (z, w) in points.iter().zip(weights) {
+        mean.axpy(*w, z, 1.0);
+    }
+    let mut covariance = DMatrix::zeros(n, n);
+    for (z, w) in points.iter().zip(weights) {
+        let d = z - &mean;
+        covariance.ger(*w, &d, &d, 1.0);
+    }
+    Some((mean, covariance))
+}
+
+/// Centres drawn with a probability that grows with the distance to those
+/// already chosen (k-means++, Arthur, Vassilvitskii 2007).
+fn far_apart(
+    points: &[DVector<f64>],
+    weights: &[f64],
+    whole: &Component,
+    count: usize,
+    rng: &mut Rng,
+) -> Vec<DVector<f64>> {
+    let white = |z: &DVector<f64>| {
+        let mut d = z - &whole.mean;
+        whole.shape.l_dirty().solve_lower_triangular_mut(&mut d);
+        d
+    };
+    let whitened: Vec<_> = points.iter().map(white).collect();
+    let mut masses = weights.to_vec();
+    let mut centres = Vec::with_capacity(count);
+    for _ in 0..count {
+        let chosen = draw_index(&masses, rng);
+        centres.push(points[chosen].clone());
+        for (i, mass) in masses.iter_mut().enumerate() {
+            let d = (&whitened[i] - &whitened[chosen]).norm_squared();
+            let nearest = if centres.len() == 1 { d } else { d.min(*mass / weights[i].max(f64::MIN_POSITIVE)) };
+            *mass = weights[i] * nearest;
+        }
+    }
+    centres
+}
+
+fn draw_index(masses: &[f64], rng: &mut Rng) -> usize {
+    let mut left = rng.random::<f64>() * masses.iter().sum::<f64>();
+    for (i, mass) in masses.iter().enumerate() {
+        left -= mass;
+        if left < 0.0 {
+            return i;
+        }
+    }
+    masses.len() - 1
+}

@@ -1,0 +1,213 @@
+//! Inference: backends behind one trait.
+//!
+//! A backend runs a whole inference on a [`Posterior`] with a [`Seed`] and
+//! says in its [`Inference`] what it found: draws, a mode, an evidence, and
+//! what it cost. Every random number comes from the seed by a fixed path, so
+//! a run is the same to the last bit on any number of threads.
+
+mod importance;
+mod map;
+mod mh;
+mod mixture;
+mod reciprocal;
+mod smc;
+
+pub use importance::ImportanceSampling;
+pub use map::{Map, Mode};
+pub use mh::{MetropolisHastings, Proposal};
+pub use mixture::Mixture;
+pub use reciprocal::ReciprocalImportance;
+pub use smc::Smc;
+
+use std::fmt::Debug;
+use std::time::Instant;
+
+use crate::draws::Draws;
+use crate::error::{Error, Result};
+use crate::model::{Cost, Posterior};
+use crate::seed::Seed;
+
+/// Hears how far an inference has come.
+pub trait Progress: Sync {
+    /// A stretch of work begins, of so many steps where that is known.
+    fn begin(&self, _what: &str, _steps: Option<u64>) {}
+    /// So many steps are done.
+    fn advance(&self, _steps: u64) {}
+}
+
+/// Progress that nobody listens to.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Quiet;
+
+impl Progress for Quiet {}
+
+/// A way to explore a posterior.
+pub trait Backend: Debug + Sync {
+    /// Its name, such as "mh".
+    fn name(&self) -> &'static str;
+
+    /// Runs the inference; [`infer`] adds the cost.
+    ///
+    /// # Errors
+    /// A model that this backend cannot do, or that fails.
+    fn explore(
+        &self,
+        posterior: &Posterior<'_>,
+        seed: Seed,
+        progress: &dyn Progress,
+    ) -> Result<Inference>;
+}
+
+/// What an inference found.
+#[derive(Debug, Clone, Default)]
+pub struct Inference {
+    /// Draws from the posterior, of the parameters as named.
+    pub draws: Option<Draws>,
+    /// The posterior mode.
+    pub mode: Option<Mode>,
+    /// The evidence.
+    pub evidence: Option<Evidence>,
+    /// What it cost.
+    pub cost: Cost,
+    /// What the user should know before trusting the result.
+    pub warnings: Vec<String>,
+}
+
+/// The evidence, p(data), with its Monte Carlo error.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Evidence {
+    /// Its natural logarithm.
+    pub log: f64,
+    /// The standard error of that.
+    pub se: f64,
+    /// How it was estimated.
+    pub method: String,
+}
+
+/// Runs a backend on a posterior and adds what it cost.
+///
+/// # Errors
+/// As [`Backend::explore`].
+pub fn infer(
+    backend: &dyn Backend,
+    posterior: &Posterior<'_>,
+    seed: Seed,
+    progress: &dyn Progress,
+) -> Result<Inference> {
+    let begun = Instant::now();
+    let before = posterior.cost();
+    let mut inference = backend.explore(posterior, seed, progress)?;
+    let after = posterior.cost();
+    inference.cost = Cost {
+        densities: after.densities - before.densities,
+        gradients: after.gradients - before.gradients,
+        simulations: after.simulations - before.simulations,
+        rejections: after.rejections - before.rejections,
+        seconds: begun.elapsed().as_secs_f64(),
+    };
+    Ok(inference)
+}
+
+/// A backend as the command names it: the name, what it is, and its making.
+#[derive(Clone, Copy)]
+pub struct Entry {
+    /// Its name.
+    pub name: &'static str,
+    /// What it does, in one line.
+    pub about: &'static str,
+    /// Makes it of a given effort.
+    pub make: fn(&Effort) -> Box<dyn Backend>,
+}
+
+impl Debug for Entry {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+/// How much work a backend is asked to do; what a backend has no use for, it
+/// passes over.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Effort {
+    /// Independent chains.
+    pub chains: usize,
+    /// Draws kept of each chain.
+    pub draws: usize,
+    /// Steps before those, for tuning.
+    pub warmup: usize,
+}
+
+impl Default for Effort {
+    fn default() -> Self {
+        Self { chains: 4, draws: 10_000, warmup: 5_000 }
+    }
+}
+
+/// Every backend that the command can name.
+pub const BACKENDS: &[Entry] = &[
+    Entry {
+        name: "mh",
+        about: "Metropolis-Hastings on the real line, adaptive",
+        make: |effort| Box::new(MetropolisHastings::adaptive(effort)),
+    },
+    Entry {
+        name: "random-walk",
+        about: "Metropolis-Hastings of the paper, tuned covariance",
+        make: |effort| Box::new(MetropolisHastings::random_walk(effort)),
+    },
+    Entry {
+        name: "smc",
+        about: "sequential Monte Carlo, tempered, with evidence",
+        make: |effort| Box::new(Smc::of_effort(effort)),
+    },
+    Entry {
+        name: "importance",
+        about: "importance sampling by a Student-t mixture, with evidence",
+        make: |effort| Box::new(ImportanceSampling::of_effort(effort)),
+    },
+    Entry {
+        name: "reciprocal",
+        about: "evidence from chains as in the paper's appendix B",
+        make: |effort| Box::new(ReciprocalImportance::of_effort(effort)),
+    },
+    Entry {
+        name: "map",
+        about: "posterior mode by L-BFGS and Nelder-Mead",
+        make: |_| Box::new(Map::default()),
+    },
+];
+
+/// The backend of that name.
+///
+/// # Errors
+/// A name that there is not; the message lists them.
+pub fn backend(name: &str, effort: &Effort) -> Result<Box<dyn Backend>> {
+    match BACKENDS.iter().find(|entry| entry.name == name) {
+        Some(entry) => Ok((entry.make)(effort)),
+        None => {
+            let names: Vec<_> = BACKENDS.iter().map(|e| e.name).collect();
+            Err(Error::input(format!(
+                "backend {name:?} is not known; expected one of {}",
+                names.join(", ")
+            )))
+        }
+    }
+}
+
+/// Empty draws with the posterior's names and units.
+fn draws_of(posterior: &Posterior<'_>) -> Result<Draws> {
+    let parameters = posterior.parameters();
+    Draws::new(
+        parameters.iter().map(|p| p.name.clone()).collect(),
+        parameters.iter().map(|p| p.unit.clone()).collect(),
+    )
+}
+
+/// ln sum exp of the terms.
+fn log_sum_exp(terms: impl Iterator<Item = f64> + Clone) -> f64 {
+    let top = terms.clone().fold(f64::NEG_INFINITY, f64::max);
+    if top == f64::NEG_INFINITY {
+        return top;
+    }
+    top + terms.map(|t| (t - top).exp()).sum::<f64>().ln()
+}

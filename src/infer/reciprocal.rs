@@ -1,0 +1,121 @@
+//! The evidence from a chain's draws, as in the paper's appendix B.
+//!
+//! 1/Z = mean of g/(L pi) over posterior draws, g a normal density with the
+//! draws' own mean and covariance (Heredia et al. 2020, equation A8). It
+//! costs nothing beyond the chains, but wherever the posterior's tails fall
+//! off faster than g's its variance is infinite: the Pareto index of the
+//! ratios says when not to believe it.
+
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+use super::mh::value;
+use super::{
+    Backend, Effort, Evidence, Inference, MetropolisHastings, Progress,
+};
+use crate::draws::{Draws, ess_mean, psis};
+use crate::error::{Error, Result};
+use crate::model::{Point, Posterior};
+use crate::seed::Seed;
+
+/// The paper's estimator, on the paper's random walk.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReciprocalImportance {
+    /// The chains whose draws it uses.
+    pub chains: MetropolisHastings,
+}
+
+impl ReciprocalImportance {
+    /// On chains of an effort.
+    pub fn of_effort(effort: &Effort) -> Self {
+        Self { chains: MetropolisHastings::random_walk(effort) }
+    }
+
+    /// The evidence from draws that there already are.
+    ///
+    /// # Errors
+    /// Draws without spread, or a model that fails.
+    pub fn estimate(
+        posterior: &Posterior<'_>,
+        draws: &Draws,
+    ) -> Result<(Evidence, Vec<String>)> {
+        let chains = log_ratios(posterior, draws)?;
+        let all = chains.concat();
+        let top = all.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let ratios: Vec<Vec<f64>> = chains
+            .iter()
+            .map(|c| c.iter().map(|l| (l - top).exp()).collect())
+            .collect();
+        let n = all.len() as f64;
+        let mean = ratios.iter().flatten().sum::<f64>() / n;
+        let square =
+            ratios.iter().flatten().map(|r| (r - mean).powi(2)).sum::<f64>();
+        let se = (square / n / ess_mean(&ratios)).sqrt() / mean;
+        let (_, k) = psis(&all);
+        let mut warnings = Vec::new();
+        if k > 0.5 {
+            warnings.push(format!(
+                "the estimator of appendix B has a poor variance here (Pareto \
+                 k = {k:.2}, above 0.5): its error is likely larger than \
+                 stated; use smc or importance"
+            ));
+        }
+        let method = "reciprocal importance sampling (appendix B)".into();
+        Ok((Evidence { log: -(mean.ln() + top), se, method }, warnings))
+    }
+}
+
+/// ln g - ln(L pi) at every draw, chain by chain.
+fn log_ratios(
+    posterior: &Posterior<'_>,
+    draws: &Draws,
+) -> Result<Vec<Vec<f64>>> {
+    let n = draws.dimension() as f64;
+    let mean = DVector::from_vec(draws.mean());
+    let shape = draws.covariance().cholesky().ok_or_else(|| {
+        Error::inference(
+            "the draws have no spread in some direction: no normal density \
+             fits them",
+        )
+    })?;
+    let l = shape.l();
+    let log_det: f64 = l.diagonal().map(f64::ln).sum();
+    let constant = -0.5 * n * (2.0 * std::f64::consts::PI).ln() - log_det;
+    let ratio = |row: &[f64]| -> Result<f64> {
+        let mut d = DVector::from_column_slice(row) - &mean;
+        l.solve_lower_triangular_mut(&mut d);
+        let density = posterior.density(Point::Natural(row))?;
+        let target = value(&density, density.natural());
+        Ok(constant - 0.5 * d.norm_squared() - target)
+    };
+    (0..draws.chains())
+        .map(|c| {
+            (0..draws.iterations())
+                .into_par_iter()
+                .map(|i| ratio(draws.row(c, i)))
+                .collect()
+        })
+        .collect()
+}
+
+impl Backend for ReciprocalImportance {
+    fn name(&self) -> &'static str {
+        "reciprocal"
+    }
+
+    fn explore(
+        &self,
+        posterior: &Posterior<'_>,
+        seed: Seed,
+        progress: &dyn Progress,
+    ) -> Result<Inference> {
+        posterior.require_proper("the estimator of appendix B")?;
+        let mut inference = self.chains.explore(posterior, seed, progress)?;
+        if let Some(draws) = &inference.draws {
+            let (evidence, warnings) = Self::estimate(posterior, draws)?;
+            inference.evidence = Some(evidence);
+            inference.warnings.extend(warnings);
+        }
+        Ok(inference)
+    }
+}

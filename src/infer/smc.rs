@@ -1,0 +1,519 @@
+//! Sequential Monte Carlo: a population led from a known distribution to the
+//! posterior by tempering.
+//!
+//! With base q and posterior density p (unnormalised), the population passes
+//! through q^(1-t) p^t for t from 0 to 1: reweighted, resampled, moved. It
+//! survives several modes, since every particle keeps to its own and moves
+//! along the differences of others lead from one to the next (ter Braak
+//! 2006), and the mean weights give the evidence (Del Moral, Doucet, Jasra
+//! 2006). A first passage starts from the prior. A second starts from a
+//! mixture fitted to what the first found, with a share of the prior, and
+//! needs one or two steps where the first needs dozens: its evidence is that
+//! much sharper, and as unbiased, for the mixture is fixed by then.
+
+use nalgebra::{DMatrix, DVector};
+use rand::RngExt;
+use rand::seq::SliceRandom;
+use rand_distr::{Distribution, StandardNormal};
+use rayon::prelude::*;
+
+use super::mh::value;
+use super::mixture::Mixture;
+use super::{Backend, Effort, Evidence, Inference, Progress, draws_of};
+use crate::error::{Error, Result};
+use crate::model::{Density, Point, Posterior};
+use crate::seed::{Rng, Seed};
+
+/// Tempered sequential Monte Carlo.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Smc {
+    /// How many particles.
+    pub particles: usize,
+    /// The share of effective particles to which a tempering step may lower
+    /// the population.
+    pub keep: f64,
+    /// How many accepted moves a particle makes on average after each step.
+    pub moves: f64,
+    /// Whether a second passage from a fitted mixture follows.
+    pub refine: bool,
+}
+
+impl Default for Smc {
+    fn default() -> Self {
+        Self { particles: 2000, keep: 0.6, moves: 5.0, refine: true }
+    }
+}
+
+impl Smc {
+    /// As many particles as fit an effort.
+    pub fn of_effort(effort: &Effort) -> Self {
+        let particles = (effort.chains * effort.draws / 20).max(500);
+        Self { particles, ..Self::default() }
+    }
+}
+
+/// The share of prior draws in the second passage's base.
+const PRIOR_SHARE: f64 = 0.1;
+
+/// The most components of the second passage's base.
+const MOST_COMPONENTS: usize = 6;
+
+/// Where a passage starts.
+#[derive(Debug)]
+pub(super) enum Base {
+    /// From the prior.
+    Prior,
+    /// From a mixture with a share of the prior.
+    Mixture(Mixture),
+}
+
+impl Base {
+    /// ln q at a place on the real line whose density is known.
+    fn log_density(&self, z: &[f64], density: &Density) -> f64 {
+        let prior = density.log_prior + density.log_jacobian;
+        match self {
+            Self::Prior => prior,
+            Self::Mixture(mixture) => {
+                let fitted =
+                    (1.0 - PRIOR_SHARE).ln() + mixture.log_density(z);
+                let prior = PRIOR_SHARE.ln() + prior;
+                super::log_sum_exp([fitted, prior].into_iter())
+            }
+        }
+    }
+
+    fn draw(
+        &self,
+        posterior: &Posterior<'_>,
+        rng: &mut Rng,
+    ) -> Result<Particle> {
+        let z = match self {
+            Self::Mixture(mixture)
+                if rng.random::<f64>() >= PRIOR_SHARE =>
+            {
+                mixture.draw(rng)
+            }
+            _ => draw_prior(posterior, rng)?,
+        };
+        self.particle(posterior, z)
+    }
+
+    fn particle(
+        &self,
+        posterior: &Posterior<'_>,
+        z: Vec<f64>,
+    ) -> Result<Particle> {
+        let density = posterior.density(Point::Line(&z))?;
+        let base = self.log_density(&z, &density);
+        let target = value(&density, density.on_line());
+        Ok(Particle { z, base, target })
+    }
+}
+
+/// A draw from the prior on the real line. A draw that the model rejects
+/// before all its parameters are known is drawn again.
+fn draw_prior(posterior: &Posterior<'_>, rng: &mut Rng) -> Result<Vec<f64>> {
+    for _ in 0..1000 {
+        let (_, found) = posterior.draw_prior(rng)?;
+        let complete = found.line.len() == posterior.dimension();
+        if complete && found.line.iter().all(|z| z.is_finite()) {
+            return Ok(found.line);
+        }
+    }
+    Err(Error::inference("the prior cannot be drawn from"))
+}
+
+/// A place with its log densities under base and posterior.
+#[derive(Debug, Clone)]
+pub(super) struct Particle {
+    pub(super) z: Vec<f64>,
+    base: f64,
+    target: f64,
+}
+
+impl Particle {
+    /// ln of the importance weight of the whole way.
+    pub(super) fn log_weight(&self) -> f64 {
+        if self.target == f64::NEG_INFINITY {
+            f64::NEG_INFINITY
+        } else {
+            self.target - self.base
+        }
+    }
+
+    fn tempered(&self, t: f64) -> f64 {
+        if self.target == f64::NEG_INFINITY {
+            return self.target;
+        }
+        (1.0 - t) * self.base + t * self.target
+    }
+}
+
+/// Draws a population from a base, in parallel.
+pub(super) fn population(
+    posterior: &Posterior<'_>,
+    base: &Base,
+    count: usize,
+    seed: Seed,
+) -> Result<Vec<Particle>> {
+    (0..count)
+        .into_par_iter()
+        .map(|i| base.draw(posterior, &mut seed.child(i as u64).rng()))
+        .collect()
+}
+
+/// A passage from base to posterior.
+struct Passage<'p, 'm> {
+    posterior: &'p Posterior<'m>,
+    base: Base,
+    smc: &'p Smc,
+    seed: Seed,
+    particles: Vec<Particle>,
+    /// Which first particle each one descends from.
+    ancestors: Vec<usize>,
+    temperature: f64,
+    steps: u64,
+    log_evidence: f64,
+    variance: f64,
+    scale: f64,
+}
+
+impl<'p, 'm> Passage<'p, 'm> {
+    fn new(
+        posterior: &'p Posterior<'m>,
+        smc: &'p Smc,
+        base: Base,
+        seed: Seed,
+    ) -> Result<Self> {
+        let particles =
+            population(posterior, &base, smc.particles, seed.child(0))?;
+        Ok(Self {
+            posterior,
+            base,
+            smc,
+            seed: seed.child(1),
+            ancestors: (0..particles.len()).collect(),
+            particles,
+            temperature: 0.0,
+            steps: 0,
+            log_evidence: 0.0,
+            variance: 0.0,
+            scale: 1.0,
+        })
+    }
+
+    /// Goes all the way.
+    fn run(&mut self, progress: &dyn Progress) -> Result<()> {
+        while self.temperature < 1.0 {
+            let weights = self.reweight()?;
+            self.resample(&weights);
+            self.steps += 1;
+            self.move_all()?;
+            progress.advance(self.particles.len() as u64);
+            if self.steps > 1000 {
+                return Err(Error::inference(
+                    "sequential Monte Carlo makes no headway: after 1000 \
+                     steps the posterior is not reached",
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Raises the temperature as far as the weights allow; the normalised
+    /// weights of the step.
+    fn reweight(&mut self) -> Result<Vec<f64>> {
+        let logs: Vec<f64> =
+            self.particles.iter().map(Particle::log_weight).collect();
+        let goal = self.smc.keep * logs.len() as f64;
+        let alive = logs.iter().filter(|l| l.is_finite()).count();
+        if alive == 0 {
+            return Err(Error::inference(
+                "no particle has a positive density: prior and recording \
+                 contradict each other",
+            ));
+        }
+        let goal = goal.min(0.9 * alive as f64);
+        let left = 1.0 - self.temperature;
+        let step = if effective(&logs, left) >= goal {
+            left
+        } else {
+            bisect(&logs, left, goal)
+        };
+        let scaled = logs.iter().map(|l| step * l);
+        let total = super::log_sum_exp(scaled.clone());
+        self.log_evidence += total - (logs.len() as f64).ln();
+        self.temperature =
+            if step == left { 1.0 } else { self.temperature + step };
+        let weights: Vec<f64> = scaled.map(|l| (l - total).exp()).collect();
+        self.variance = self.relative_variance(&weights);
+        Ok(weights)
+    }
+
+    /// The relative variance of the evidence so far, from how the weight is
+    /// spread over families (Lee, Whiteley 2018, equation 6).
+    fn relative_variance(&self, weights: &[f64]) -> f64 {
+        let n = weights.len() as f64;
+        let mut families = vec![0.0; weights.len()];
+        for (ancestor, w) in self.ancestors.iter().zip(weights) {
+            families[*ancestor] += w;
+        }
+        let alike: f64 = families.iter().map(|w| w * w).sum();
+        let factor = (n / (n - 1.0)).powf(self.steps as f64 + 1.0);
+        (1.0 - factor * (1.0 - alike)).max(0.0)
+    }
+
+    fn resample(&mut self, weights: &[f64]) {
+        let mut rng = self.seed.child(2 * self.steps).rng();
+        let chosen = systematic(weights, weights.len(), &mut rng);
+        self.particles =
+            chosen.iter().map(|&i| self.particles[i].clone()).collect();
+        self.ancestors = chosen.iter().map(|&i| self.ancestors[i]).collect();
+        self.shuffle(&mut rng);
+    }
+
+    /// Mixes the order, so that the two halves that move in turn are alike.
+    fn shuffle(&mut self, rng: &mut Rng) {
+        let mut order: Vec<usize> = (0..self.particles.len()).collect();
+        order.shuffle(rng);
+        self.particles =
+            order.iter().map(|&i| self.particles[i].clone()).collect();
+        self.ancestors = order.iter().map(|&i| self.ancestors[i]).collect();
+    }
+
+    /// Sweeps of moves, until a particle has moved often enough on average.
+    fn move_all(&mut self) -> Result<()> {
+        let factor = cholesky_factor(&self.particles);
+        let seed = self.seed.child(2 * self.steps + 1);
+        let mut moved = 0.0;
+        for sweep in 0..60 {
+            let rate = self.sweep(&factor, seed.child(sweep))?;
+            moved += rate;
+            self.scale *= (0.6 * (rate - 0.25)).exp();
+            if sweep >= 2 && moved >= self.smc.moves {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves one half along differences within the other, then the other way
+    /// round; the rate of acceptance.
+    fn sweep(&mut self, factor: &DMatrix<f64>, seed: Seed) -> Result<f64> {
+        let half = self.particles.len() / 2;
+        let mut accepted = 0;
+        for turn in 0..2 {
+            let (left, right) = self.particles.split_at_mut(half);
+            let (moving, others): (&mut [Particle], &[Particle]) =
+                if turn == 0 { (left, right) } else { (right, left) };
+            let mover = Mover {
+                posterior: self.posterior,
+                base: &self.base,
+                others,
+                factor,
+                scale: self.scale,
+                temperature: self.temperature,
+            };
+            let seed = seed.child(turn);
+            accepted += moving
+                .par_iter_mut()
+                .enumerate()
+                .map(|(i, particle)| {
+                    mover.step(particle, &mut seed.child(i as u64).rng())
+                })
+                .collect::<Result<Vec<bool>>>()?
+                .into_iter()
+                .filter(|a| *a)
+                .count();
+        }
+        Ok(accepted as f64 / self.particles.len() as f64)
+    }
+}
+
+/// What a particle needs to move.
+struct Mover<'a, 'm> {
+    posterior: &'a Posterior<'m>,
+    base: &'a Base,
+    others: &'a [Particle],
+    factor: &'a DMatrix<f64>,
+    scale: f64,
+    temperature: f64,
+}
+
+impl Mover<'_, '_> {
+    /// One Metropolis step; whether it was taken.
+    fn step(&self, particle: &mut Particle, rng: &mut Rng) -> Result<bool> {
+        let z = self.propose(&particle.z, rng);
+        let proposed = self.base.particle(self.posterior, z)?;
+        let t = self.temperature;
+        let log_ratio = proposed.tempered(t) - particle.tempered(t);
+        let taken = rng.random::<f64>().ln() < log_ratio;
+        if taken {
+            *particle = proposed;
+        }
+        Ok(taken)
+    }
+
+    /// A normal step of the whole population's shape, or one along the
+    /// difference of two others: scaled within a mode, whole between modes.
+    fn propose(&self, z: &[f64], rng: &mut Rng) -> Vec<f64> {
+        let n = z.len();
+        let d = n as f64;
+        let choice: f64 = rng.random();
+        let mut at = DVector::from_column_slice(z);
+        let normal = DVector::from_fn(n, |_, _| StandardNormal.sample(rng));
+        if choice < 0.4 || self.others.len() < 2 {
+            let scale = self.scale * 2.38 / d.sqrt();
+            at.gemv(scale, self.factor, &normal, 1.0);
+        } else {
+            let a = &self.others[rng.random_range(0..self.others.len())].z;
+            let b = &self.others[rng.random_range(0..self.others.len())].z;
+            let gamma = if choice < 0.85 {
+                let spread: f64 = StandardNormal.sample(rng);
+                self.scale.min(1.0) * 2.38 / (2.0 * d).sqrt() * spread
+            } else {
+                1.0
+            };
+            for i in 0..n {
+                at[i] += gamma * (a[i] - b[i]);
+            }
+            at.gemv(1e-3, self.factor, &normal, 1.0);
+        }
+        at.as_slice().to_vec()
+    }
+}
+
+/// The number of effective particles after a tempering step.
+fn effective(logs: &[f64], step: f64) -> f64 {
+    let once = super::log_sum_exp(logs.iter().map(|l| step * l));
+    let twice = super::log_sum_exp(logs.iter().map(|l| 2.0 * step * l));
+    (2.0 * once - twice).exp()
+}
+
+/// The step after which just `goal` particles are effective.
+fn bisect(logs: &[f64], most: f64, goal: f64) -> f64 {
+    let (mut low, mut high) = (0.0, most);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if effective(logs, middle) < goal { high = middle } else { low = middle }
+    }
+    if low > 0.0 { low } else { high }
+}
+
+/// Systematic resampling: one uniform draw places an even comb on the
+/// cumulated weights.
+pub(super) fn systematic(
+    weights: &[f64],
+    count: usize,
+    rng: &mut Rng,
+) -> Vec<usize> {
+    let offset: f64 = rng.random();
+    let total: f64 = weights.iter().sum();
+    let mut chosen = Vec::with_capacity(count);
+    let (mut i, mut cumulated) = (0, weights[0]);
+    for k in 0..count {
+        let tooth = (k as f64 + offset) / count as f64 * total;
+        while cumulated < tooth && i + 1 < weights.len() {
+            i += 1;
+            cumulated += weights[i];
+        }
+        chosen.push(i);
+    }
+    chosen
+}
+
+/// The Cholesky factor of the population's covariance.
+fn cholesky_factor(particles: &[Particle]) -> DMatrix<f64> {
+    let n = particles[0].z.len();
+    let count = particles.len() as f64;
+    let mut mean = DVector::zeros(n);
+    for p in particles {
+        mean += DVector::from_column_slice(&p.z) / count;
+    }
+    let mut covariance = DMatrix::identity(n, n) * 1e-12;
+    for p in particles {
+        let d = DVector::from_column_slice(&p.z) - &mean;
+        covariance.ger(1.0 / count, &d, &d, 1.0);
+    }
+    let diagonal = covariance.diagonal().map(f64::sqrt);
+    covariance
+        .cholesky()
+        .map_or_else(|| DMatrix::from_diagonal(&diagonal), |c| c.l())
+}
+
+impl Backend for Smc {
+    fn name(&self) -> &'static str {
+        "smc"
+    }
+
+    fn explore(
+        &self,
+        posterior: &Posterior<'_>,
+        seed: Seed,
+        progress: &dyn Progress,
+    ) -> Result<Inference> {
+        posterior.require_proper("sequential Monte Carlo")?;
+        if self.particles < 10 {
+            return Err(Error::input(
+                "sequential Monte Carlo needs at least 10 particles",
+            ));
+        }
+        progress.begin("tempering from the prior", None);
+        let first = Base::Prior;
+        let mut passage =
+            Passage::new(posterior, self, first, seed.child(0))?;
+        passage.run(progress)?;
+        let mut method = "sequential Monte Carlo from the prior";
+        if self.refine
+            && let Some(mixture) = fitted(&passage, seed.child(1))
+        {
+            progress.begin("tempering from a fitted mixture", None);
+            let second = Base::Mixture(mixture);
+            passage = Passage::new(posterior, self, second, seed.child(2))?;
+            passage.run(progress)?;
+            method = "sequential Monte Carlo, refined from a fitted mixture";
+        }
+        conclude(posterior, &passage, method)
+    }
+}
+
+fn fitted(passage: &Passage<'_, '_>, seed: Seed) -> Option<Mixture> {
+    let draws: Vec<_> =
+        passage.particles.iter().map(|p| p.z.clone()).collect();
+    let even = vec![1.0 / draws.len() as f64; draws.len()];
+    Mixture::fit(&draws, &even, MOST_COMPONENTS, &mut seed.rng())
+}
+
+/// The population as draws, and the evidence.
+fn conclude(
+    posterior: &Posterior<'_>,
+    passage: &Passage<'_, '_>,
+    method: &str,
+) -> Result<Inference> {
+    let rows = passage
+        .particles
+        .par_iter()
+        .map(|p| posterior.natural(&p.z))
+        .collect::<Result<Vec<_>>>()?
+        .concat();
+    let mut draws = draws_of(posterior)?;
+    draws.push_chain(rows, None)?;
+    let se = passage.variance.sqrt();
+    let mut warnings = Vec::new();
+    if se > 0.3 {
+        warnings.push(format!(
+            "the log evidence has a standard error of {se:.2}: use more \
+             particles"
+        ));
+    }
+    Ok(Inference {
+        draws: Some(draws),
+        evidence: Some(Evidence {
+            log: passage.log_evidence,
+            se,
+            method: method.to_owned(),
+        }),
+        warnings,
+        ..Inference::default()
+    })
+}

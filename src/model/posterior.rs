@@ -1,0 +1,224 @@
+//! A model as a backend works on it: dimension, names, and a count of every
+//! evaluation.
+//!
+//! All evaluations of an inference pass through here, so that what a result
+//! cost is counted in one place.
+
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+use super::listener::{Collected, Collector};
+use super::program::{Density, Model, Point, Weights};
+use crate::error::{Error, Result};
+use crate::seed::Rng;
+
+/// A parameter of a model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameter {
+    /// Its name.
+    pub name: String,
+    /// Its unit; "1" for a pure number.
+    pub unit: String,
+    /// The bounds of its prior's support, in the middle of those above it.
+    pub bounds: (f64, f64),
+}
+
+/// What an inference cost.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Cost {
+    /// Evaluations of the log density.
+    pub densities: u64,
+    /// Evaluations of its gradient.
+    pub gradients: u64,
+    /// Motions solved: the simulations.
+    pub simulations: u64,
+    /// Evaluations that found no flow or noise: density zero.
+    pub rejections: u64,
+    /// Wall-clock time \[s\].
+    pub seconds: f64,
+}
+
+/// A posterior distribution to be explored.
+pub struct Posterior<'m> {
+    model: &'m dyn Model,
+    parameters: Vec<Parameter>,
+    proper: bool,
+    densities: AtomicU64,
+    gradients: AtomicU64,
+    simulations: AtomicU64,
+    rejections: AtomicU64,
+}
+
+impl std::fmt::Debug for Posterior<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Posterior")
+            .field("parameters", &self.parameters)
+            .field("cost", &self.cost())
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'m> Posterior<'m> {
+    /// The posterior of a model.
+    ///
+    /// # Errors
+    /// A model without parameters or with two of one name, and whatever the
+    /// model itself fails with.
+    pub fn new(model: &'m dyn Model) -> Result<Self> {
+        let mut collector = Collector::default();
+        model.evaluate(Point::Middle, Some(&mut collector))?;
+        let found = collector.collected;
+        if found.names.is_empty() {
+            return Err(Error::input("the model has no parameters"));
+        }
+        for (i, name) in found.names.iter().enumerate() {
+            if found.names[..i].contains(name) {
+                return Err(Error::input(format!(
+                    "two parameters are called {name}; rename one"
+                )));
+            }
+        }
+        let parts = found.names.into_iter().zip(found.units);
+        Ok(Self {
+            model,
+            parameters: parts
+                .zip(found.bounds)
+                .map(|((name, unit), bounds)| Parameter { name, unit, bounds })
+                .collect(),
+            proper: found.proper.iter().all(|p| *p),
+            densities: AtomicU64::new(0),
+            gradients: AtomicU64::new(0),
+            simulations: AtomicU64::new(0),
+            rejections: AtomicU64::new(0),
+        })
+    }
+
+    /// The parameters, in the order declared.
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    /// How many there are.
+    pub fn dimension(&self) -> usize {
+        self.parameters.len()
+    }
+
+    /// Whether every prior is proper, so that it can be drawn from and an
+    /// evidence exists.
+    pub fn is_proper(&self) -> bool {
+        self.proper
+    }
+
+    /// An input error unless every prior is proper.
+    ///
+    /// # Errors
+    /// A flat prior.
+    pub fn require_proper(&self, backend: &str) -> Result<()> {
+        if self.proper {
+            return Ok(());
+        }
+        Err(Error::input(format!(
+            "{backend} needs proper priors, but one is Flat(); give that \
+             parameter a prior that integrates to 1, or use mh or map"
+        )))
+    }
+
+    /// The density at a point.
+    ///
+    /// # Errors
+    /// What no other parameter values would mend.
+    #[inline]
+    pub fn density(&self, point: Point<'_>) -> Result<Density> {
+        self.count(&self.densities, self.model.evaluate(point, None)?)
+    }
+
+    /// The density at a place on the real line with its gradient.
+    ///
+    /// # Errors
+    /// As [`Posterior::density`].
+    pub fn gradient(
+        &self,
+        z: &[f64],
+        weights: Weights,
+        gradient: &mut [f64],
+    ) -> Result<Density> {
+        let density = self.model.gradient(z, weights, gradient)?;
+        self.count(&self.gradients, density)
+    }
+
+    /// Everything that the model says at a point.
+    ///
+    /// # Errors
+    /// As [`Posterior::density`].
+    pub fn collect(&self, point: Point<'_>) -> Result<(Density, Collected)> {
+        let mut collector = Collector::default();
+        let density = self.model.evaluate(point, Some(&mut collector))?;
+        let density = self.count(&self.densities, density)?;
+        Ok((density, collector.collected))
+    }
+
+    /// The parameters' values at a place on the real line.
+    ///
+    /// # Errors
+    /// As [`Posterior::density`].
+    pub fn natural(&self, z: &[f64]) -> Result<Vec<f64>> {
+        self.collect(Point::Line(z)).map(|(_, found)| found.natural)
+    }
+
+    /// The place on the real line of given values.
+    ///
+    /// # Errors
+    /// Values outside the priors' supports, by name.
+    pub fn line(&self, x: &[f64]) -> Result<Vec<f64>> {
+        if x.len() != self.dimension() {
+            return Err(Error::input(format!(
+                "{} values for {} parameters",
+                x.len(),
+                self.dimension()
+            )));
+        }
+        let (_, found) = self.collect(Point::Natural(x))?;
+        let outside = (0..x.len())
+            .find(|&i| !found.line.get(i).is_some_and(|z| z.is_finite()));
+        match outside {
+            Some(i) => Err(Error::input(format!(
+                "{} = {} lies outside its prior's support",
+                self.parameters[i].name, x[i]
+            ))),
+            None => Ok(found.line),
+        }
+    }
+
+    /// A draw from the prior, as a place on the real line.
+    ///
+    /// # Errors
+    /// As [`Posterior::density`].
+    pub fn draw_prior(&self, rng: &mut Rng) -> Result<(Density, Collected)> {
+        self.collect(Point::Prior(rng))
+    }
+
+    /// The model itself, for listeners of one's own.
+    pub fn model(&self) -> &'m dyn Model {
+        self.model
+    }
+
+    /// What has been spent so far, without the time.
+    pub fn cost(&self) -> Cost {
+        Cost {
+            densities: self.densities.load(Relaxed),
+            gradients: self.gradients.load(Relaxed),
+            simulations: self.simulations.load(Relaxed),
+            rejections: self.rejections.load(Relaxed),
+            seconds: 0.0,
+        }
+    }
+
+    #[inline]
+    fn count(&self, calls: &AtomicU64, density: Density) -> Result<Density> {
+        calls.fetch_add(1, Relaxed);
+        self.simulations.fetch_add(density.slides, Relaxed);
+        if density.rejected.is_some() {
+            self.rejections.fetch_add(1, Relaxed);
+        }
+        Ok(density)
+    }
+}
