@@ -10,6 +10,7 @@ pub mod noise;
 pub mod observe;
 pub mod physics;
 pub mod prior;
+pub mod report;
 pub mod seed;
 
 pub use declared::Declared;
