@@ -1,5 +1,7 @@
 //! couloir
 pub mod block;
+pub mod calibrate;
+pub mod cli;
 pub mod context;
 pub mod declared;
 pub mod draws;
@@ -10,7 +12,9 @@ pub mod model;
 pub mod noise;
 pub mod observe;
 pub mod physics;
+pub mod predict;
 pub mod prior;
+pub mod report;
 pub mod scalar;
 pub mod seed;
 

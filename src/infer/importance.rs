@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use super::mixture::Mixture;
 use super::smc::{Base, Particle, Smc, population, systematic};
 use super::{Backend, Effort, Evidence, Inference, Progress, draws_of};
-use crate::draws;
+use crate::draws::{Draws, psis};
 use crate::error::Result;
 use crate::model::Posterior;
 use crate::seed::Seed;
@@ -61,17 +61,37 @@ impl Backend for ImportanceSampling {
     ) -> Result<Inference> {
         posterior.require_proper("importance sampling")?;
         let pilot = self.pilot.explore(posterior, seed.child(0), progress)?;
-        let rows: Vec<Vec<f64>> = pilot
-            .draws
-            .iter()
-            .flat_map(draws::Draws::rows)
+        let draws = pilot.draws.unwrap_or(draws_of(posterior)?);
+        self.from_draws(posterior, &draws, seed.child(1), progress)
+    }
+}
+
+/// How many draws a mixture is fitted to at the most.
+const FITTED: usize = 2000;
+
+impl ImportanceSampling {
+    /// The same without a pilot run, from posterior draws that there are.
+    ///
+    /// # Errors
+    /// An improper prior, or a model that fails.
+    pub fn from_draws(
+        &self,
+        posterior: &Posterior<'_>,
+        draws: &Draws,
+        seed: Seed,
+        progress: &dyn Progress,
+    ) -> Result<Inference> {
+        posterior.require_proper("importance sampling")?;
+        let rows: Vec<Vec<f64>> = draws
+            .thinned(FITTED)
+            .into_iter()
             .map(|row| posterior.line(row))
             .collect::<Result<_>>()?;
         let even = vec![1.0 / rows.len() as f64; rows.len()];
         let mut base = fit(&rows, &even, seed.child(1));
         progress.begin("importance sampling", None);
         for round in 0..REFITS {
-            let count = (self.draws / 4).max(500);
+            let count = (self.draws / 4).clamp(500, FITTED);
             let found =
                 population(posterior, &base, count, seed.child(2 + round))?;
             let weights = normalised(&found);
@@ -110,7 +130,7 @@ impl ImportanceSampling {
         let weights = normalised(found);
         let effective = 1.0 / weights.iter().map(|w| w * w).sum::<f64>();
         let se = ((n / effective - 1.0) / (n - 1.0)).sqrt();
-        let (_, k) = draws::psis(&logs);
+        let (_, k) = psis(&logs);
         let mut rng = seed.rng();
         let chosen =
             systematic(&weights, effective.max(100.0) as usize, &mut rng);

@@ -478,8 +478,13 @@ impl Backend for Smc {
 }
 
 fn fitted(passage: &Passage<'_, '_>, seed: Seed) -> Option<Mixture> {
-    let draws: Vec<_> =
-        passage.particles.iter().map(|p| p.z.clone()).collect();
+    let step = passage.particles.len().div_ceil(2000);
+    let draws: Vec<_> = passage
+        .particles
+        .iter()
+        .step_by(step)
+        .map(|p| p.z.clone())
+        .collect();
     let even = vec![1.0 / draws.len() as f64; draws.len()];
     Mixture::fit(&draws, &even, MOST_COMPONENTS, &mut seed.rng())
 }

@@ -9,12 +9,13 @@ use super::number::Number;
 use super::program::Program;
 use super::run::{Label, Run};
 use crate::block::{Field, List};
-use crate::error::{Error, Outcome, Result};
+use crate::error::{Error, Outcome, Result, Stop};
 use crate::noise::{NoiseEntry, Spacing};
 use crate::observe::{Event, Quantity};
 use crate::physics::friction::LawSum;
+use crate::physics::{Rest, State, rest, sample};
 use crate::prior::AnyPrior;
-use crate::scalar::Real;
+use crate::scalar::{Plain, Real};
 
 /// One event under a sum of named laws with a named noise.
 #[derive(Debug)]
@@ -115,6 +116,37 @@ impl Assembled {
     /// How many of the parameters are the friction law's; they come first.
     pub fn friction_dimension(&self) -> usize {
         self.laws
+    }
+
+    /// The motion at increasing times \[s\], parameters as named.
+    ///
+    /// # Errors
+    /// [`Stop::Reject`] where the law has no flow with these values.
+    pub fn motion(
+        &self,
+        natural: &[f64],
+        times: &[f64],
+    ) -> Result<Vec<State<Plain>>, Stop> {
+        let values = self.law_values(natural);
+        let law = self.friction.with(&values);
+        let mut states = Vec::with_capacity(times.len());
+        let (path, release) = (self.event.path(), self.event.release());
+        sample(&path, &law, release, times, false, |s| states.push(s))?;
+        Ok(states)
+    }
+
+    /// Where and when the mass comes to rest; `None` if it never does.
+    ///
+    /// # Errors
+    /// [`Stop::Reject`] where the law has no flow with these values.
+    pub fn rest(&self, natural: &[f64]) -> Result<Option<Rest<Plain>>, Stop> {
+        let values = self.law_values(natural);
+        let law = self.friction.with(&values);
+        rest(&self.event.path(), &law, self.event.release())
+    }
+
+    fn law_values(&self, natural: &[f64]) -> List<Real<Plain>> {
+        natural[..self.laws].iter().map(|&x| Real::new(x)).collect()
     }
 
     /// Name and prior of each parameter.

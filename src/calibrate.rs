@@ -1,0 +1,314 @@
+//! A whole calibration: inference, predictions, checks, as one report.
+
+use rayon::prelude::*;
+
+use crate::draws::{self, Draws, Summary, summarise};
+use crate::error::{Error, Result, Stop};
+use crate::infer::{
+    Backend, ImportanceSampling, Inference, Map, Mode, Progress, infer,
+};
+use crate::model::{Assembled, Point, Posterior};
+use crate::observe::Series;
+use crate::physics::State;
+use crate::predict::{Bands, posterior_predictive, prior_predictive};
+use crate::prior::{AnyPrior, Prior};
+use crate::report::{
+    CalibrationReport, Checks, EvidenceReport, ParameterReport, TrackReport,
+};
+use crate::scalar::{Plain, Real};
+use crate::seed::Seed;
+
+/// A calibration as it is told, with the draws behind it.
+#[derive(Debug, Clone)]
+pub struct Calibration {
+    /// Everything that is told.
+    pub report: CalibrationReport,
+    /// The posterior draws.
+    pub draws: Draws,
+}
+
+/// Calibrates a model: runs the backend, finds the mode and the evidence,
+/// predicts, and checks the fit.
+///
+/// # Errors
+/// A backend without draws, or a model that fails.
+pub fn calibrate(
+    model: &Assembled,
+    backend: &dyn Backend,
+    seed: u64,
+    progress: &dyn Progress,
+) -> Result<Calibration> {
+    let posterior = Posterior::new(model)?;
+    let root = Seed::new(seed);
+    let mut found = infer(backend, &posterior, root.child(0), progress)?;
+    let draws = draws_of(&found, backend)?;
+    let mode = infer(&Map::default(), &posterior, root.child(1), progress)?;
+    if found.evidence.is_none() && posterior.is_proper() {
+        progress.begin("evidence", None);
+        let sampler = ImportanceSampling::default();
+        let estimate =
+            sampler.from_draws(&posterior, &draws, root.child(2), progress)?;
+        found.evidence = estimate.evidence;
+        found.warnings.extend(estimate.warnings);
+    }
+    progress.begin("predicting", None);
+    let series = recording(model)?;
+    let predicted = posterior_predictive(
+        &posterior,
+        &draws,
+        series.times(),
+        root.child(3),
+    )?;
+    let prior = prior_predictive(
+        &posterior,
+        1000,
+        series.times(),
+        root.child(4),
+    )
+    .ok();
+    let summaries = summarise(&draws);
+    let median: Vec<f64> = summaries.iter().map(|s| s.q50).collect();
+    let mut report = CalibrationReport {
+        event: model.event().name().to_owned(),
+        friction: model.friction(),
+        noise: model.noise(),
+        backend: backend.name().to_owned(),
+        seed,
+        parameters: parameters(model, &draws, &summaries, mode.mode.as_ref()),
+        acceptance: draws
+            .acceptance()
+            .iter()
+            .copied()
+            .filter(|a| a.is_finite())
+            .collect(),
+        simulations: posterior.cost().simulations,
+        seconds: found.cost.seconds,
+        evidence: found.evidence.as_ref().map(|e| EvidenceReport {
+            value: e.log,
+            se: e.se,
+            method: e.method.clone(),
+        }),
+        warnings: found.warnings,
+        synthetic: model.event().name().to_lowercase().contains("synthetic"),
+        prior_bands: prior,
+        ..CalibrationReport::default()
+    };
+    tell_recording(&mut report, series, predicted);
+    check_fit(&mut report, &posterior, series, &median)?;
+    report.track = track(model, &median)?;
+    report.warnings.extend(convergence(&summaries, draws.chains()));
+    Ok(Calibration { report, draws })
+}
+
+fn draws_of(found: &Inference, backend: &dyn Backend) -> Result<Draws> {
+    found.draws.clone().ok_or_else(|| {
+        Error::input(format!(
+            "backend {} yields no draws, which a calibration is made of; use \
+             mh, smc or another, or `bench` to see the mode",
+            backend.name()
+        ))
+    })
+}
+
+fn recording(model: &Assembled) -> Result<&Series> {
+    model
+        .event()
+        .recordings()
+        .next()
+        .ok_or_else(|| Error::input("the event has no recording"))
+}
+
+fn tell_recording(
+    report: &mut CalibrationReport,
+    series: &Series,
+    bands: Bands,
+) {
+    report.quantity = series.quantity().name().to_owned();
+    report.unit = series.quantity().unit().to_owned();
+    report.window = series.window();
+    report.times = series.times().to_vec();
+    report.values = series.values().to_vec();
+    report.standard_errors =
+        series.grid().standard_errors().map(<[f64]>::to_vec);
+    report.checks.coverage90 = bands.coverage(series.values());
+    report.checks.rmse = bands.rmse(series.values());
+    report.bands = bands;
+}
+
+/// Innovations at the posterior median, and what the tests say of them.
+fn check_fit(
+    report: &mut CalibrationReport,
+    posterior: &Posterior<'_>,
+    series: &Series,
+    median: &[f64],
+) -> Result<()> {
+    let (_, found) = posterior.collect(Point::Natural(median))?;
+    let innovations = found.innovations.into_iter().next().unwrap_or_default();
+    let n = innovations.len();
+    let lags = (n / 5).clamp(1, 10);
+    report.autocorrelation =
+        draws::autocorrelation(&innovations, (n / 3).min(20))
+            .into_iter()
+            .skip(1)
+            .collect();
+    let ljung_box = draws::ljung_box(&innovations, lags, 0);
+    let most = 5000.min(n);
+    let shapiro_wilk = draws::shapiro_wilk(&innovations[..most]);
+    report.checks = Checks {
+        ljung_box_p: ljung_box.map_or(f64::NAN, |test| test.p),
+        shapiro_wilk_p: shapiro_wilk.map_or(f64::NAN, |test| test.p),
+        ..report.checks.clone()
+    };
+    report.innovation_times = series.times()[..n].to_vec();
+    report.innovations = innovations;
+    Ok(())
+}
+
+/// How many draws of each chain a trace shows.
+const TRACE: usize = 500;
+
+/// How many draws a scatter shows.
+const SCATTER: usize = 1500;
+
+fn parameters(
+    model: &Assembled,
+    draws: &Draws,
+    summaries: &[Summary],
+    mode: Option<&Mode>,
+) -> Vec<ParameterReport> {
+    let rows = draws.thinned(SCATTER);
+    let laws = model.friction_dimension();
+    let priors: Vec<_> = model.priors().collect();
+    summaries
+        .par_iter()
+        .enumerate()
+        .map(|(i, s)| {
+            let (_, prior) = priors[i];
+            let curve = curve(prior, draws, i);
+            ParameterReport {
+                name: s.name.clone(),
+                unit: s.unit.clone(),
+                of_errors: i >= laws,
+                map: mode.map(|m| m.natural[i]),
+                mean: s.mean,
+                sd: s.sd,
+                q025: s.q025,
+                q05: s.q05,
+                q50: s.q50,
+                q95: s.q95,
+                q975: s.q975,
+                rhat: s.rhat,
+                ess_bulk: s.ess_bulk,
+                ess_tail: s.ess_tail,
+                mcse_mean: s.mcse_mean,
+                prior_text: prior.to_string(),
+                prior_density: prior_curve(prior, &curve),
+                posterior_density: curve,
+                chains: draws.column(i).iter().map(|c| thin(c)).collect(),
+                pooled: rows.iter().map(|row| row[i]).collect(),
+            }
+        })
+        .collect()
+}
+
+fn thin(chain: &[f64]) -> Vec<f64> {
+    let step = chain.len().div_ceil(TRACE).max(1);
+    chain.iter().copied().step_by(step).collect()
+}
+
+/// The posterior density of a parameter, as a curve.
+fn curve(
+    prior: &AnyPrior,
+    draws: &Draws,
+    parameter: usize,
+) -> Vec<(f64, f64)> {
+    let ends = |p: f64| prior.quantile(p).filter(|x| x.is_finite());
+    let support =
+        draws::Support { lower: ends(0.0), upper: ends(1.0) };
+    let pooled = draws.pooled(parameter);
+    draws::density(&pooled, support, 200).map_or_else(Vec::new, |d| {
+        d.grid.into_iter().zip(d.density).collect()
+    })
+}
+
+/// The prior's density over the posterior's range and as far again.
+fn prior_curve(prior: &AnyPrior, curve: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let (Some((low, _)), Some((high, _))) = (curve.first(), curve.last())
+    else {
+        return Vec::new();
+    };
+    let low = prior.quantile(0.005).map_or(*low, |q| q.min(*low));
+    let high = prior.quantile(0.995).map_or(*high, |q| q.max(*high));
+    // Heavy tails would leave nothing of the posterior to see.
+    let span = curve[curve.len() - 1].0 - curve[0].0;
+    let low = low.max(curve[0].0 - 3.0 * span);
+    let high = high.min(curve[curve.len() - 1].0 + 3.0 * span);
+    (0..=300)
+        .map(|i| low + (high - low) * f64::from(i) / 300.0)
+        .map(|x| {
+            let log: Real<Plain> = prior.log_density(Real::new(x));
+            (x, log.value().exp())
+        })
+        .filter(|(_, d)| d.is_finite())
+        .collect()
+}
+
+/// The terrain, with the mass of the median flow on it.
+fn track(model: &Assembled, median: &[f64]) -> Result<TrackReport> {
+    let event = model.event();
+    let (x, z) = event.track().points();
+    let last = event
+        .recordings()
+        .flat_map(|s| s.times().last().copied())
+        .fold(0.0, f64::max);
+    let times: Vec<f64> =
+        (0..=12).map(|i| last * f64::from(i) / 12.0).collect();
+    let mut report = TrackReport {
+        x: x.to_vec(),
+        z: z.to_vec(),
+        ..TrackReport::default()
+    };
+    let states = match model.motion(median, &times) {
+        Ok(states) => states,
+        Err(Stop::Reject(_)) => return Ok(report),
+        Err(Stop::Fail(error)) => return Err(error),
+    };
+    let place = |t: f64, s: f64| {
+        let (x, z) = event.track().position(s);
+        (t, x, z)
+    };
+    report.positions = times
+        .iter()
+        .zip(&states)
+        .map(|(t, state): (&f64, &State<Plain>)| {
+            place(*t, state.distance.value())
+        })
+        .collect();
+    report.rest = model.rest(median).ok().flatten().and_then(|rest| {
+        let s = rest.distance.value();
+        let shown = s <= event.track().length();
+        shown.then(|| place(rest.time.value(), s))
+    });
+    Ok(report)
+}
+
+/// What to know of the chains before trusting them.
+fn convergence(summaries: &[Summary], chains: usize) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for s in summaries {
+        if chains > 1 && s.rhat >= 1.01 {
+            warnings.push(format!(
+                "the chains have not agreed on {} (R-hat {:.3}, should be \
+                 below 1.01): ask for more --warmup and --draws",
+                s.name, s.rhat
+            ));
+        }
+        if s.ess_bulk < 100.0 * chains as f64 {
+            warnings.push(format!(
+                "only {:.0} effective draws of {}: ask for more --draws",
+                s.ess_bulk, s.name
+            ));
+        }
+    }
+    warnings
+}

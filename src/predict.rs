@@ -1,0 +1,148 @@
+//! What a model predicts: bands of the flow alone and with its errors.
+
+use rayon::prelude::*;
+
+use crate::draws::{Draws, quantile};
+use crate::error::{Error, Result};
+use crate::model::{Collector, Model, Point, Posterior, Replicates};
+use crate::seed::Seed;
+
+/// A prediction over time: the median flow and 90 % bands about it.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Bands {
+    /// Times, increasing \[s\].
+    pub times: Vec<f64>,
+    /// Median of the flow.
+    pub median: Vec<f64>,
+    /// 5 % quantile of the flow alone.
+    pub flow_low: Vec<f64>,
+    /// 95 % quantile of the flow alone.
+    pub flow_high: Vec<f64>,
+    /// 5 % quantile of the flow with errors.
+    pub full_low: Vec<f64>,
+    /// 95 % quantile of the flow with errors.
+    pub full_high: Vec<f64>,
+}
+
+/// A flow's predictions and one replicate of the recording.
+type Pair = (Vec<f64>, Vec<f64>);
+
+/// Numbers kept at the most: what the bands are quantiles of.
+const MOST_NUMBERS: usize = 20_000_000;
+
+/// How many draws a band over `length` values is made of.
+fn draws_for(length: usize) -> usize {
+    (MOST_NUMBERS / length.max(1)).clamp(50, 2000)
+}
+
+/// The posterior predictive bands of the model's first series, whose times
+/// \[s\] are given.
+///
+/// # Errors
+/// A model that fails, or draws without a single flow.
+pub fn posterior_predictive(
+    posterior: &Posterior<'_>,
+    draws: &Draws,
+    times: &[f64],
+    seed: Seed,
+) -> Result<Bands> {
+    let rows = draws.thinned(draws_for(times.len()));
+    let pairs = rows
+        .par_iter()
+        .enumerate()
+        .map(|(i, row)| {
+            replicate(posterior, || Point::Natural(row), seed.child(i as u64))
+        })
+        .collect::<Result<Vec<_>>>()?;
+    bands(pairs.into_iter().flatten().collect(), times)
+}
+
+/// The same before any recording is seen: `count` draws from the prior.
+///
+/// # Errors
+/// An improper prior, or a model that fails.
+pub fn prior_predictive(
+    posterior: &Posterior<'_>,
+    count: usize,
+    times: &[f64],
+    seed: Seed,
+) -> Result<Bands> {
+    posterior.require_proper("a prior predictive band")?;
+    let count = count.min(draws_for(times.len()));
+    let pairs = (0..count as u64)
+        .into_par_iter()
+        .map(|i| {
+            let mut rng = seed.child(i).rng();
+            let (density, found) = posterior.draw_prior(&mut rng)?;
+            if density.rejected.is_some() {
+                return Ok(None);
+            }
+            let row = found.natural;
+            replicate(posterior, || Point::Natural(&row), seed.child(i))
+        })
+        .collect::<Result<Vec<_>>>()?;
+    bands(pairs.into_iter().flatten().collect(), times)
+}
+
+/// The flow at a point and one replicate of its recording; `None` where the
+/// model rejects the point.
+fn replicate<'a>(
+    posterior: &Posterior<'_>,
+    point: impl Fn() -> Point<'a>,
+    seed: Seed,
+) -> Result<Option<Pair>> {
+    let model: &dyn Model = posterior.model();
+    let mut collector = Collector::default();
+    let density = model.evaluate(point(), Some(&mut collector))?;
+    if density.rejected.is_some() {
+        return Ok(None);
+    }
+    let mut rng = seed.child(1).rng();
+    let mut replicates = Replicates::new(&mut rng);
+    model.evaluate(point(), Some(&mut replicates))?;
+    let flow = collector.collected.predictions.into_iter().next();
+    let full = replicates.series.into_iter().next();
+    Ok(flow.zip(full))
+}
+
+fn bands(pairs: Vec<Pair>, times: &[f64]) -> Result<Bands> {
+    if pairs.is_empty() {
+        return Err(Error::inference("no draw has a flow to predict with"));
+    }
+    let mut result = Bands { times: times.to_vec(), ..Bands::default() };
+    let mut flow = vec![0.0; pairs.len()];
+    let mut full = flow.clone();
+    for i in 0..times.len() {
+        for (k, (f, r)) in pairs.iter().enumerate() {
+            (flow[k], full[k]) = (f[i], r[i]);
+        }
+        flow.sort_by(f64::total_cmp);
+        full.sort_by(f64::total_cmp);
+        result.median.push(quantile(&flow, 0.5));
+        result.flow_low.push(quantile(&flow, 0.05));
+        result.flow_high.push(quantile(&flow, 0.95));
+        result.full_low.push(quantile(&full, 0.05));
+        result.full_high.push(quantile(&full, 0.95));
+    }
+    Ok(result)
+}
+
+impl Bands {
+    /// The share of the values inside the band with errors.
+    pub fn coverage(&self, values: &[f64]) -> f64 {
+        let band = self.full_low.iter().zip(&self.full_high);
+        let inside = values
+            .iter()
+            .zip(band)
+            .filter(|(v, (low, high))| (*low..=*high).contains(v))
+            .count();
+        inside as f64 / values.len() as f64
+    }
+
+    /// The root mean square of values minus median flow.
+    pub fn rmse(&self, values: &[f64]) -> f64 {
+        let squares =
+            values.iter().zip(&self.median).map(|(v, m)| (v - m).powi(2));
+        (squares.sum::<f64>() / values.len() as f64).sqrt()
+    }
+}

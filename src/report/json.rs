@@ -1,0 +1,114 @@
+//! A calibration as `calibration.json`, the document for programs.
+
+use serde_json::{Map, Value, json};
+
+use super::{CalibrationReport, Checks, EvidenceReport, ParameterReport};
+
+/// `calibration.json`, schema 1; numbers that are not finite are null.
+///
+/// ```
+/// use couloir::report::{CalibrationReport, calibration_json};
+/// let json = calibration_json(&CalibrationReport::default());
+/// assert_eq!(json["schema"], 1);
+/// assert!(json["log_evidence"].is_null());
+/// ```
+pub fn calibration_json(report: &CalibrationReport) -> Value {
+    let parameters: Map<String, Value> = report
+        .parameters
+        .iter()
+        .map(|p| (p.name.clone(), parameter(p)))
+        .collect();
+    json!({
+        "schema": 1,
+        "event": report.event,
+        "model": {"friction": report.friction, "noise": report.noise},
+        "backend": report.backend,
+        "seed": report.seed,
+        "parameters": parameters,
+        "log_evidence": report.evidence.as_ref().map(evidence),
+        "checks": checks(&report.checks),
+    })
+}
+
+// serde_json turns numbers that are not finite into null.
+fn parameter(p: &ParameterReport) -> Value {
+    json!({
+        "unit": p.unit,
+        "map": p.map,
+        "mean": p.mean,
+        "sd": p.sd,
+        "q025": p.q025,
+        "q05": p.q05,
+        "q50": p.q50,
+        "q95": p.q95,
+        "q975": p.q975,
+        "rhat": p.rhat,
+        "ess_bulk": p.ess_bulk,
+        "ess_tail": p.ess_tail,
+        "mcse_mean": p.mcse_mean,
+    })
+}
+
+fn evidence(e: &EvidenceReport) -> Value {
+    json!({"value": e.value, "se": e.se, "method": e.method})
+}
+
+fn checks(c: &Checks) -> Value {
+    json!({
+        "ljung_box_p": c.ljung_box_p,
+        "shapiro_wilk_p": c.shapiro_wilk_p,
+        "coverage90": c.coverage90,
+        "rmse": c.rmse,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::fixture;
+
+    fn keys(value: &Value) -> Vec<&str> {
+        value
+            .as_object()
+            .map(|o| o.keys().map(String::as_str).collect())
+            .unwrap_or_default()
+    }
+
+    #[test]
+    fn keys_are_those_of_the_format() {
+        let json = calibration_json(&fixture::calibration());
+        let mut top = keys(&json);
+        top.sort_unstable();
+        assert_eq!(
+            top,
+            [
+                "backend",
+                "checks",
+                "event",
+                "log_evidence",
+                "model",
+                "parameters",
+                "schema",
+                "seed"
+            ]
+        );
+        assert_eq!(keys(&json["parameters"]["mu"]).len(), 13);
+        assert_eq!(keys(&json["checks"]).len(), 4);
+        assert_eq!(keys(&json["log_evidence"]).len(), 3);
+        assert_eq!(keys(&json["model"]), ["friction", "noise"]);
+    }
+
+    #[test]
+    fn what_is_not_finite_is_null() {
+        let mut report = fixture::calibration();
+        report.parameters[0].rhat = f64::NAN;
+        report.parameters[0].sd = f64::INFINITY;
+        report.parameters[0].map = Some(f64::NAN);
+        report.evidence = None;
+        let json = calibration_json(&report);
+        for key in ["rhat", "sd", "map"] {
+            assert!(json["parameters"]["mu"][key].is_null(), "{key}");
+        }
+        assert!(json["log_evidence"].is_null());
+    }
+}

@@ -1,0 +1,238 @@
+//! The whole report as one HTML page that needs no network and no script.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use super::digits::{
+    NONE, beside, grouped, p_value, per_cent, significant, whole,
+};
+use super::svg::{Picture, pictures};
+use super::text::{plain, unit};
+use super::words::in_words;
+use super::{CalibrationReport, ParameterReport};
+
+const STYLE: &str = include_str!("page.css");
+
+/// `report.html`: the result in words, the table, the pictures, and how all
+/// of it was computed.
+///
+/// ```
+/// use couloir::report::{CalibrationReport, page};
+/// let html = page(&CalibrationReport::default());
+/// assert!(html.starts_with("<!DOCTYPE html>"));
+/// ```
+pub fn page(report: &CalibrationReport) -> String {
+    let title = format!("{}: calibration", plain(&report.event));
+    let body = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport"
+                    content="width=device-width, initial-scale=1";
+                title { (title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                (heading(report))
+                (words(report))
+                (table(&report.parameters))
+                @for picture in pictures(report) { (figure(&picture)) }
+                (computed(report))
+            }
+        }
+    };
+    body.into_string()
+}
+
+fn heading(report: &CalibrationReport) -> Markup {
+    html! {
+        h1 { (plain(&report.event)) }
+        p.sub {
+            @if report.synthetic { span.synthetic { "synthetic data" } " " }
+            "Calibration of " (plain(&report.friction)) " friction with "
+            (plain(&report.noise)) " errors on " (plain(&report.quantity))
+        }
+    }
+}
+
+fn words(report: &CalibrationReport) -> Markup {
+    html! {
+        ul.words {
+            @for sentence in in_words(report) { li { (plain(&sentence)) } }
+        }
+        @if !report.warnings.is_empty() {
+            div.warning role="note" {
+                strong { "Warnings" }
+                ul {
+                    @for warning in &report.warnings {
+                        li { (plain(warning)) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn table(parameters: &[ParameterReport]) -> Markup {
+    html! {
+        h2 { "Parameters" }
+        @if parameters.is_empty() { p { "No parameters." } } @else {
+            div.wide { table {
+                thead { tr {
+                    th scope="col" { "parameter" }
+                    @for heading in ["median", "mean", "sd", "90 % interval",
+                        "mode", "R-hat", "ESS"] {
+                        th scope="col" { (heading) }
+                    }
+                } }
+                tbody { @for p in parameters { (row(p)) } }
+            } }
+            p.note {
+                "Of the posterior: sd, the standard deviation; the interval \
+                 from the 5 % to the 95 % quantile; mode, the most probable \
+                 values together. R-hat: 1 where the chains agree, up to \
+                 1.01 is fine. ESS: how many independent draws the chains \
+                 are worth, 400 or more are enough."
+            }
+        }
+    }
+}
+
+fn row(p: &ParameterReport) -> Markup {
+    let number = |x: f64| beside(x, p.sd).replace('-', "−");
+    let rhat = match p.rhat {
+        x if x.is_finite() => format!("{x:.3}"),
+        _ => NONE.to_owned(),
+    };
+    let mode = p.map.map_or("–".to_owned(), number);
+    html! {
+        tr {
+            td.name {
+                (plain(&p.name))
+                @if !p.unit_shown().is_empty() {
+                    " [" (p.unit_shown()) "]"
+                }
+            }
+            td { (number(p.q50)) }
+            td { (number(p.mean)) }
+            td { (number(p.sd)) }
+            td { (number(p.q05)) " to " (number(p.q95)) }
+            td { (mode) }
+            td { (rhat) }
+            td { (whole(p.ess_bulk.min(p.ess_tail))) }
+        }
+    }
+}
+
+fn figure(picture: &Picture) -> Markup {
+    html! {
+        h2 { (picture.title) }
+        figure id=(picture.name) {
+            div.wide { (PreEscaped(&picture.svg)) }
+            figcaption { (picture.caption) }
+        }
+    }
+}
+
+fn computed(report: &CalibrationReport) -> Markup {
+    html! {
+        h2 { "How it was computed" }
+        dl {
+            @for (term, text) in facts(report) {
+                dt { (term) }
+                dd { (plain(&text)) }
+            }
+        }
+        @if !report.parameters.is_empty() {
+            h3 { "Priors" }
+            dl {
+                @for p in &report.parameters {
+                    dt { (plain(&p.name)) }
+                    dd { (plain(&p.prior_text)) }
+                }
+            }
+        }
+    }
+}
+
+/// What a reader needs to repeat the run and to judge it.
+fn facts(report: &CalibrationReport) -> Vec<(&'static str, String)> {
+    let c = &report.checks;
+    let seconds = significant(report.seconds, 3);
+    let mut out = vec![
+        ("program", format!("couloir {}", env!("CARGO_PKG_VERSION"))),
+        ("friction", report.friction.clone()),
+        ("errors", report.noise.clone()),
+        ("recording", recording(report)),
+        ("backend", report.backend.clone()),
+        ("seed", report.seed.to_string()),
+        ("simulations", grouped(report.simulations)),
+        ("duration", format!("{seconds} s")),
+        (
+            "residual error",
+            format!("{} {}", significant(c.rmse, 3), unit(&report.unit)),
+        ),
+        ("values in the 90 % band", per_cent(c.coverage90)),
+        ("Ljung-Box p", p_value(c.ljung_box_p)),
+        ("Shapiro-Wilk p", p_value(c.shapiro_wilk_p)),
+    ];
+    if !report.acceptance.is_empty() {
+        let rates: Vec<_> =
+            report.acceptance.iter().map(|a| per_cent(*a)).collect();
+        out.push(("acceptance by chain", rates.join(", ")));
+    }
+    if let Some(e) = &report.evidence {
+        let (value, se) = (significant(e.value, 5), significant(e.se, 2));
+        let text = format!("{value}, standard error {se} ({})", e.method);
+        out.push(("log evidence", text));
+    }
+    out
+}
+
+fn recording(report: &CalibrationReport) -> String {
+    let window = match report.window {
+        w if w > 0.0 => {
+            format!("means over {} s", significant(w, 3))
+        }
+        _ => "instantaneous".to_owned(),
+    };
+    format!(
+        "{} values of {} [{}], {window}",
+        report.values.len(),
+        report.quantity,
+        unit(&report.unit)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::fixture;
+
+    #[test]
+    fn the_page_stands_alone() {
+        let html = page(&fixture::calibration());
+        let inner = html.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
+        for outside in ["http", "//", "<script", "<link", "@import", "src="] {
+            assert!(!inner.contains(outside), "{outside}");
+        }
+        assert!(html.contains("<html lang=\"en\">"));
+        assert!(html.contains("synthetic data"));
+        assert_eq!(html.matches("<svg").count(), 6);
+        assert_eq!(html.matches("<figcaption>").count(), 6);
+    }
+
+    #[test]
+    fn identifiers_are_unique() {
+        let html = page(&fixture::calibration());
+        let mut ids: Vec<&str> = html
+            .split(" id=\"")
+            .skip(1)
+            .filter_map(|rest| rest.split('"').next())
+            .collect();
+        let count = ids.len();
+        ids.sort_unstable();
+        ids.dedup();
+        assert_eq!(ids.len(), count);
+    }
+}

@@ -1,0 +1,62 @@
+//! The pictures of a calibration, one a file, as SVG that scales, prints
+//! and keeps its text as text.
+//!
+//! Written by hand rather than through a plotting library: titles for screen
+//! readers, clipping, dashes and small files need elements that those do not
+//! offer.
+
+mod axes;
+mod canvas;
+mod densities;
+mod pairs;
+mod palette;
+mod recording;
+mod residuals;
+mod traces;
+mod track;
+
+use super::{CalibrationReport, text};
+
+/// A picture with what the reader has to know to read it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Picture {
+    /// A word for its file name: `recording`.
+    pub name: &'static str,
+    /// Its heading.
+    pub title: &'static str,
+    /// How to read it.
+    pub caption: String,
+    /// The SVG document.
+    pub svg: String,
+}
+
+/// All pictures for which the report has data, in the order to be read.
+///
+/// ```
+/// use couloir::report::{CalibrationReport, pictures};
+/// let mut report = CalibrationReport::default();
+/// assert!(pictures(&report).is_empty());
+/// (report.times, report.values) = (vec![0.0, 1.0], vec![0.0, 4.2]);
+/// assert_eq!(pictures(&report)[0].name, "recording");
+/// ```
+pub fn pictures(report: &CalibrationReport) -> Vec<Picture> {
+    [
+        recording::draw(report),
+        track::draw(report),
+        densities::draw(report),
+        pairs::draw(report),
+        traces::draw(report),
+        residuals::draw(report),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// `name [unit]`, or the name alone for a number without a unit.
+fn with_unit(name: &str, unit: &str) -> String {
+    match text::unit(unit).as_str() {
+        "" => name.to_owned(),
+        unit => format!("{name} [{unit}]"),
+    }
+}

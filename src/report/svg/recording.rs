@@ -1,0 +1,143 @@
+//! The recording over time with its predictive bands.
+
+use super::axes::{Axes, Key, Labels, Scale, legend};
+use super::canvas::{Canvas, Frame, WIDTH};
+use super::palette::{FLOW, FULL, INK, POSTERIOR, PRIOR, Pen};
+use super::{Picture, with_unit};
+use crate::report::text::{shorten, thinned};
+use crate::report::{Bands, CalibrationReport};
+
+const HEIGHT: f64 = 400.0;
+/// How many values are drawn.
+const VALUES: usize = 2000;
+/// How many values are drawn with error bars.
+const BARRED: usize = 200;
+/// At how many times the bands are drawn.
+const TIMES: usize = 500;
+
+const MEDIAN: Pen = Pen::new(POSTERIOR, 2.0);
+const PRIOR_EDGE: Pen = Pen::new(PRIOR, 1.5).dashed();
+
+/// The recording with its bands, where there is a recording.
+pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
+    if report.times.is_empty() || report.values.is_empty() {
+        return None;
+    }
+    let mut canvas = Canvas::new("recording", HEIGHT);
+    let y = value_scale(report);
+    let left = Axes::margin(y, HEIGHT - 110.0);
+    let top = legend(&mut canvas, left, 2.0, &entries(report));
+    let (right, bottom) = (WIDTH - 14.0, HEIGHT - 46.0);
+    let frame = Frame { left, right, top, bottom };
+    let times = report.times.iter().chain(&report.bands.times);
+    let axes = Axes { frame, x: Scale::of(times.copied()).padded(0.01), y };
+    let name = with_unit(&shorten(&report.quantity, 24), &report.unit);
+    let labels = Labels { x: Some("time [s]"), y: Some(&name) };
+    axes.draw(&mut canvas, labels);
+    canvas.clip(frame);
+    draw_fills(&mut canvas, &axes, &report.bands);
+    if let Some(prior) = &report.prior_bands {
+        draw_edges(&mut canvas, &axes, prior);
+    }
+    draw_median(&mut canvas, &axes, &report.bands);
+    let shown = draw_values(&mut canvas, &axes, report);
+    canvas.unclip();
+    Some(Picture {
+        name: "recording",
+        title: "Recording and prediction",
+        caption: caption(report, shown),
+        svg: canvas.finish("The recording over time with predictive bands"),
+    })
+}
+
+fn entries(report: &CalibrationReport) -> Vec<(Key, &'static str)> {
+    let mut out = vec![(Key::Dot(Pen::new(INK, 5.0)), "recording")];
+    if !report.bands.times.is_empty() {
+        out.push((Key::Line(MEDIAN), "median flow"));
+        out.push((Key::Fill(FLOW), "90 % of flows"));
+        out.push((Key::Fill(FULL), "90 % with errors"));
+    }
+    if report.prior_bands.is_some() {
+        out.push((Key::Line(PRIOR_EDGE), "90 % of flows before the data"));
+    }
+    out
+}
+
+/// Recording and posterior in full, and of the prior what is near them.
+fn value_scale(report: &CalibrationReport) -> Scale {
+    let b = &report.bands;
+    let posterior = report.values.iter().chain(&b.full_low);
+    let posterior = posterior.chain(&b.full_high).chain(&b.median);
+    let base = Scale::of(posterior.copied()).padded(0.04);
+    let Some(prior) = &report.prior_bands else { return base };
+    let edges = prior.flow_low.iter().chain(&prior.flow_high);
+    let prior = Scale::of(edges.copied()).padded(0.02);
+    prior.within(base.padded(0.35)).with(base)
+}
+
+fn draw_fills(canvas: &mut Canvas, axes: &Axes, b: &Bands) {
+    let edge = |v: &[f64]| edge(axes, &b.times, v);
+    canvas.area(&edge(&b.full_low), &edge(&b.full_high), FULL, 1.0);
+    canvas.area(&edge(&b.flow_low), &edge(&b.flow_high), FLOW, 1.0);
+}
+
+fn draw_median(canvas: &mut Canvas, axes: &Axes, b: &Bands) {
+    canvas.curve(&edge(axes, &b.times, &b.median), MEDIAN);
+}
+
+fn draw_edges(canvas: &mut Canvas, axes: &Axes, prior: &Bands) {
+    for side in [&prior.flow_low, &prior.flow_high] {
+        canvas.curve(&edge(axes, &prior.times, side), PRIOR_EDGE);
+    }
+}
+
+fn edge(axes: &Axes, times: &[f64], values: &[f64]) -> Vec<(f64, f64)> {
+    let count = times.len().min(values.len());
+    let kept = thinned(count, TIMES).into_iter();
+    kept.map(|i| axes.at(times[i], values[i])).collect()
+}
+
+/// Draws the values and returns how many.
+fn draw_values(
+    canvas: &mut Canvas,
+    axes: &Axes,
+    report: &CalibrationReport,
+) -> usize {
+    let all = axes.points(&report.times, &report.values);
+    let kept = thinned(all.len(), VALUES);
+    let points: Vec<_> = kept.iter().map(|&i| all[i]).collect();
+    if let Some(errors) = &report.standard_errors
+        && all.len() <= BARRED
+    {
+        let rows = report.times.iter().zip(&report.values).zip(errors);
+        for ((&t, &v), &se) in rows.filter(|r| r.1.is_finite()) {
+            let (low, high) = (axes.at(t, v - se), axes.at(t, v + se));
+            canvas.line(low, high, Pen::new(INK, 1.0));
+        }
+    }
+    let size = if points.len() > 300 { 2.5 } else { 5.0 };
+    canvas.dots(&points, Pen::new(INK, size));
+    points.len()
+}
+
+fn caption(report: &CalibrationReport, shown: usize) -> String {
+    let mut out = "Nine of ten recorded values should lie in the outer band. \
+         The inner band holds nine of ten flows that the parameters left \
+         open by the recording produce; the outer band adds the errors."
+        .to_owned();
+    if report.prior_bands.is_some() {
+        out.push_str(
+            " Dashed: the same range of flows before the recording was \
+             used, drawn as far as it fits.",
+        );
+    }
+    let count = report.times.len().min(report.values.len());
+    if shown < count {
+        out.push_str(&format!(
+            " Of {count} values, {shown} evenly spread ones are drawn."
+        ));
+    } else if report.standard_errors.is_some() && count <= BARRED {
+        out.push_str(" Bars: one standard error of a value, up and down.");
+    }
+    out
+}
