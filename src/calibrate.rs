@@ -59,13 +59,8 @@ pub fn calibrate(
         series.times(),
         root.child(3),
     )?;
-    let prior = prior_predictive(
-        &posterior,
-        1000,
-        series.times(),
-        root.child(4),
-    )
-    .ok();
+    let prior =
+        prior_predictive(&posterior, 1000, series.times(), root.child(4)).ok();
     let summaries = summarise(&draws);
     let median: Vec<f64> = summaries.iter().map(|s| s.q50).collect();
     let mut report = CalibrationReport {
@@ -223,12 +218,10 @@ fn curve(
     parameter: usize,
 ) -> Vec<(f64, f64)> {
     let ends = |p: f64| prior.quantile(p).filter(|x| x.is_finite());
-    let support =
-        draws::Support { lower: ends(0.0), upper: ends(1.0) };
+    let support = draws::Support { lower: ends(0.0), upper: ends(1.0) };
     let pooled = draws.pooled(parameter);
-    draws::density(&pooled, support, 200).map_or_else(Vec::new, |d| {
-        d.grid.into_iter().zip(d.density).collect()
-    })
+    draws::density(&pooled, support, 200)
+        .map_or_else(Vec::new, |d| d.grid.into_iter().zip(d.density).collect())
 }
 
 /// The prior's density over the posterior's range and as far again.
@@ -263,11 +256,8 @@ fn track(model: &Assembled, median: &[f64]) -> Result<TrackReport> {
         .fold(0.0, f64::max);
     let times: Vec<f64> =
         (0..=12).map(|i| last * f64::from(i) / 12.0).collect();
-    let mut report = TrackReport {
-        x: x.to_vec(),
-        z: z.to_vec(),
-        ..TrackReport::default()
-    };
+    let mut report =
+        TrackReport { x: x.to_vec(), z: z.to_vec(), ..TrackReport::default() };
     let states = match model.motion(median, &times) {
         Ok(states) => states,
         Err(Stop::Reject(_)) => return Ok(report),

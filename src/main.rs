@@ -1,1 +1,5 @@
-fn main() {}
+//! The command `couloir`.
+
+fn main() -> std::process::ExitCode {
+    couloir::cli::main()
+}

@@ -1,1 +1,179 @@
-//! cli
+//! The command `couloir`: parse, call the library, print.
+//!
+//! Nothing below this folder prints. A user's own binary offers its own laws
+//! through [`main_with`].
+
+mod bench;
+mod calibrate;
+mod compare;
+mod new;
+mod progress;
+mod simulate;
+mod study;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, Parser, Subcommand};
+
+use crate::error::Result;
+use crate::infer::{BACKENDS, Effort};
+use crate::physics::friction::Laws;
+
+/// Calibrates avalanche friction laws from recordings, in a Bayesian way.
+#[derive(Debug, Parser)]
+#[command(name = "couloir", version, about, max_term_width = 80)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Calibrate a friction law from a recording
+    Calibrate(calibrate::Arguments),
+    /// Compare models by their evidence
+    Compare(compare::Arguments),
+    /// Run the motion with given parameter values
+    Simulate(simulate::Arguments),
+    /// Write a commented event to start from
+    New(new::Arguments),
+    /// Run every backend on an event, side by side
+    Bench(bench::Arguments),
+}
+
+/// Which event, and what to change of its model.
+#[derive(Debug, Args)]
+struct Subject {
+    /// Event folder, or its event.toml; a passenger car coasting uphill, a
+    /// real recording, where none is given
+    event: Option<PathBuf>,
+    /// Friction law instead of the event's: none, or one or a sum of coulomb,
+    /// turbulent, voellmy, pcm, cohesion, viscous, velocity-weakening,
+    /// curvature, entrainment, such as "coulomb + turbulent"
+    #[arg(long, value_name = "LAW")]
+    friction: Option<String>,
+    /// Noise instead of the event's: iid, ar(k), student
+    #[arg(long, value_name = "NOISE")]
+    noise: Option<String>,
+}
+
+/// How much work to do, and from which seed.
+#[derive(Debug, Args)]
+struct Work {
+    /// Independent chains
+    #[arg(long, default_value_t = 4, value_parser = at_least_one)]
+    chains: usize,
+    /// Draws kept of each chain
+    #[arg(long, default_value_t = 10_000, value_parser = at_least_one)]
+    draws: usize,
+    /// Steps before those, for tuning
+    #[arg(long, default_value_t = 5_000)]
+    warmup: usize,
+    /// Seed of every random draw
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+impl Work {
+    fn effort(&self) -> Effort {
+        Effort { chains: self.chains, draws: self.draws, warmup: self.warmup }
+    }
+}
+
+/// Where results go.
+#[derive(Debug, Args)]
+struct Output {
+    /// Folder to write the results to
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print one JSON document instead of the table
+    #[arg(long)]
+    json: bool,
+}
+
+/// The most of anything that is counted on the command line: beyond it a run
+/// would not end, or not fit in memory.
+const MOST: usize = 100_000_000;
+
+fn at_least_one(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(n @ 1..=MOST) => Ok(n),
+        _ => Err(format!("expected a whole number from 1 to {MOST}")),
+    }
+}
+
+fn backend_name(text: &str) -> Result<String, String> {
+    let names: Vec<_> = BACKENDS.iter().map(|entry| entry.name).collect();
+    if names.contains(&text) {
+        Ok(text.to_owned())
+    } else {
+        Err(format!("expected one of {}", names.join(", ")))
+    }
+}
+
+/// Runs the command with the built-in laws.
+pub fn main() -> ExitCode {
+    main_with(&Laws::default())
+}
+
+/// Runs the command with laws of one's own beside the built-in ones.
+///
+/// ```no_run
+/// use couloir::physics::friction::Laws;
+/// fn main() -> std::process::ExitCode {
+///     couloir::cli::main_with(&Laws::default())
+/// }
+/// ```
+pub fn main_with(laws: &Laws) -> ExitCode {
+    let cli = Cli::parse();
+    let outcome = match &cli.command {
+        Command::Calibrate(arguments) => arguments.run(laws),
+        Command::Compare(arguments) => arguments.run(laws),
+        Command::Simulate(arguments) => arguments.run(laws),
+        Command::New(arguments) => arguments.run(),
+        Command::Bench(arguments) => arguments.run(laws),
+    };
+    match outcome {
+        Ok(text) => print(&text),
+        Err(error) => {
+            complain(&error.to_string());
+            ExitCode::from(if error.is_input() { 2 } else { 1 })
+        }
+    }
+}
+
+/// Prints a result. A reader that has gone away (`| head`) is no error.
+#[allow(clippy::print_stdout)]
+fn print(text: &str) -> ExitCode {
+    use std::io::Write;
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => {
+            ExitCode::SUCCESS
+        }
+        Err(_) => ExitCode::FAILURE,
+    }
+}
+
+#[allow(clippy::print_stderr)]
+fn complain(message: &str) {
+    eprintln!("couloir: {message}");
+}
+
+/// The width to print to: that of the terminal, 80 at the most.
+fn width() -> usize {
+    let columns = console_columns().unwrap_or(80);
+    columns.clamp(44, 80)
+}
+
+fn console_columns() -> Option<usize> {
+    std::env::var("COLUMNS").ok()?.parse().ok()
+}
+
+/// Progress as a plain line.
+#[allow(clippy::print_stderr)]
+fn complain_plainly(what: &str) {
+    eprintln!("couloir: {what} ...");
+}

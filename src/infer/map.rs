@@ -99,9 +99,8 @@ impl Map {
             let before = best.0;
             let smooth = quasi_newton(posterior, &best.1);
             let spread = if round == 0 { 0.3 } else { 0.05 };
-            for found in smooth
-                .into_iter()
-                .chain(simplex(posterior, &best.1, spread))
+            for found in
+                smooth.into_iter().chain(simplex(posterior, &best.1, spread))
             {
                 let at = height(&found)?;
                 if at > best.0 {
@@ -148,8 +147,7 @@ fn simplex(
         corner[i] += spread;
         corners.push(corner);
     }
-    let solver =
-        NelderMead::new(corners).with_sd_tolerance(1e-10).ok()?;
+    let solver = NelderMead::new(corners).with_sd_tolerance(1e-10).ok()?;
     let run = Executor::new(Descent(posterior), solver)
         .configure(|state| state.max_iters(400 * start.len() as u64))
         .run()

@@ -104,8 +104,7 @@ impl MetropolisHastings {
         index: usize,
         rng: &mut Rng,
     ) -> Result<Vec<f64>> {
-        if let Some(start) =
-            self.starts.get(index % self.starts.len().max(1))
+        if let Some(start) = self.starts.get(index % self.starts.len().max(1))
         {
             let density = posterior.density(Point::Natural(start))?;
             if density.rejected.is_some() {
@@ -218,8 +217,7 @@ impl<'p, 'm> Walk<'p, 'm> {
     ) -> Result<Self> {
         let n = start.len();
         let on_line = *proposal == Proposal::Adaptive;
-        let place =
-            if on_line { posterior.line(&start)? } else { start };
+        let place = if on_line { posterior.line(&start)? } else { start };
         let spread = |i: usize| {
             if on_line { 0.1 } else { 0.05 * place[i].abs().max(1e-3) }
         };

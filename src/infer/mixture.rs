@@ -88,9 +88,9 @@ impl Mixture {
         let effective = 1.0 / weights.iter().map(|w| w * w).sum::<f64>();
         let mut best: Option<(f64, Self)> = None;
         for count in 1..=most {
-            let Some(fitted) = expectation_maximisation(
-                &points, weights, count, rng,
-            ) else {
+            let Some(fitted) =
+                expectation_maximisation(&points, weights, count, rng)
+            else {
                 continue;
             };
             let score = fitted.criterion(&points, weights, effective);
@@ -220,8 +220,7 @@ fn maximise(
             }
             let mean = &means[k] / masses[k];
             let second = &squares[k] / totals[k];
-            let outer =
-                &mean * mean.transpose() * (masses[k] / totals[k]);
+            let outer = &mean * mean.transpose() * (masses[k] / totals[k]);
             Component::new(totals[k], mean, &(second - outer))
         })
         .collect()
@@ -266,7 +265,11 @@ fn far_apart(
         centres.push(points[chosen].clone());
         for (i, mass) in masses.iter_mut().enumerate() {
             let d = (&whitened[i] - &whitened[chosen]).norm_squared();
-            let nearest = if centres.len() == 1 { d } else { d.min(*mass / weights[i].max(f64::MIN_POSITIVE)) };
+            let nearest = if centres.len() == 1 {
+                d
+            } else {
+                d.min(*mass / weights[i].max(f64::MIN_POSITIVE))
+            };
             *mass = weights[i] * nearest;
         }
     }

@@ -74,8 +74,7 @@ impl Base {
         match self {
             Self::Prior => prior,
             Self::Mixture(mixture) => {
-                let fitted =
-                    (1.0 - PRIOR_SHARE).ln() + mixture.log_density(z);
+                let fitted = (1.0 - PRIOR_SHARE).ln() + mixture.log_density(z);
                 let prior = PRIOR_SHARE.ln() + prior;
                 super::log_sum_exp([fitted, prior].into_iter())
             }
@@ -88,9 +87,7 @@ impl Base {
         rng: &mut Rng,
     ) -> Result<Particle> {
         let z = match self {
-            Self::Mixture(mixture)
-                if rng.random::<f64>() >= PRIOR_SHARE =>
-            {
+            Self::Mixture(mixture) if rng.random::<f64>() >= PRIOR_SHARE => {
                 mixture.draw(rng)
             }
             _ => draw_prior(posterior, rng)?,
@@ -395,7 +392,11 @@ fn bisect(logs: &[f64], most: f64, goal: f64) -> f64 {
     let (mut low, mut high) = (0.0, most);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if effective(logs, middle) < goal { high = middle } else { low = middle }
+        if effective(logs, middle) < goal {
+            high = middle
+        } else {
+            low = middle
+        }
     }
     if low > 0.0 { low } else { high }
 }
@@ -460,8 +461,7 @@ impl Backend for Smc {
         }
         progress.begin("tempering from the prior", None);
         let first = Base::Prior;
-        let mut passage =
-            Passage::new(posterior, self, first, seed.child(0))?;
+        let mut passage = Passage::new(posterior, self, first, seed.child(0))?;
         passage.run(progress)?;
         let mut method = "sequential Monte Carlo from the prior";
         if self.refine
@@ -479,12 +479,8 @@ impl Backend for Smc {
 
 fn fitted(passage: &Passage<'_, '_>, seed: Seed) -> Option<Mixture> {
     let step = passage.particles.len().div_ceil(2000);
-    let draws: Vec<_> = passage
-        .particles
-        .iter()
-        .step_by(step)
-        .map(|p| p.z.clone())
-        .collect();
+    let draws: Vec<_> =
+        passage.particles.iter().step_by(step).map(|p| p.z.clone()).collect();
     let even = vec![1.0 / draws.len() as f64; draws.len()];
     Mixture::fit(&draws, &even, MOST_COMPONENTS, &mut seed.rng())
 }

@@ -88,9 +88,9 @@ pub(super) fn per_cent(share: f64) -> String {
 /// bounds allow it, with labels of equal precision.
 pub(super) fn ticks(low: f64, high: f64, count: usize) -> Vec<(f64, String)> {
     let count = count.max(1);
-    let tried = (count..count + 4).map(|n| ticks_of(low, high, n));
-    let enough = tried.clone().find(|marks| marks.len() > 1);
-    enough.or(tried.last()).unwrap_or_default()
+    let mut tried = (count..count + 4).map(|n| ticks_of(low, high, n));
+    let enough = tried.find(|marks| marks.len() > 1);
+    enough.unwrap_or_else(|| ticks_of(low, high, count))
 }
 
 fn ticks_of(low: f64, high: f64, count: usize) -> Vec<(f64, String)> {

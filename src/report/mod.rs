@@ -40,12 +40,12 @@ pub struct CalibrationReport {
     pub quantity: String,
     /// The unit of the recording: `m/s`.
     pub unit: String,
-    /// A value is the mean over that many seconds before its time [s]; 0:
+    /// A value is the mean over that many seconds before its time; 0:
     /// instantaneous.
     pub window: f64,
     /// The unknowns, in the model's order.
     pub parameters: Vec<ParameterReport>,
-    /// Times of the recording [s].
+    /// Times of the recording in s.
     pub times: Vec<f64>,
     /// The recording, in `unit`.
     pub values: Vec<f64>,
@@ -59,7 +59,7 @@ pub struct CalibrationReport {
     pub track: TrackReport,
     /// Standardised innovations at the posterior median.
     pub innovations: Vec<f64>,
-    /// The times of the innovations [s].
+    /// The times of the innovations in s.
     pub innovation_times: Vec<f64>,
     /// Autocorrelation of the innovations at lags 1, 2, ...
     pub autocorrelation: Vec<f64>,
@@ -71,7 +71,7 @@ pub struct CalibrationReport {
     pub acceptance: Vec<f64>,
     /// How often the flow was simulated.
     pub simulations: u64,
-    /// Wall-clock time of the run [s].
+    /// Wall-clock time of the run in s.
     pub seconds: f64,
     /// What the reader has to know before trusting the result.
     pub warnings: Vec<String>,
@@ -128,11 +128,11 @@ pub struct ParameterReport {
 /// The terrain and where the mass of the median flow is on it.
 #[derive(Debug, Clone, Default)]
 pub struct TrackReport {
-    /// Horizontal distance of the surveyed points [m].
+    /// Horizontal distance of the surveyed points in m.
     pub x: Vec<f64>,
-    /// Elevation of the surveyed points [m].
+    /// Elevation of the surveyed points in m.
     pub z: Vec<f64>,
-    /// Time [s], horizontal distance [m] and elevation [m] of the mass.
+    /// Time in s, horizontal distance in m and elevation in m of the mass.
     pub positions: Vec<(f64, f64, f64)>,
     /// The same where the mass comes to rest, if it does.
     pub rest: Option<(f64, f64, f64)>,

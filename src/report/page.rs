@@ -58,7 +58,7 @@ fn heading(report: &CalibrationReport) -> Markup {
 fn words(report: &CalibrationReport) -> Markup {
     html! {
         ul.words {
-            @for sentence in in_words(report) { li { (plain(&sentence)) } }
+            @for sentence in in_words(report) { li { (unbroken(&sentence)) } }
         }
         @if !report.warnings.is_empty() {
             div.warning role="note" {
@@ -71,6 +71,14 @@ fn words(report: &CalibrationReport) -> Markup {
             }
         }
     }
+}
+
+/// The sentence with numbers kept on one line with what belongs to them.
+fn unbroken(sentence: &str) -> String {
+    let sentence = plain(sentence).replace(" %", "\u{a0}%");
+    sentence
+        .replace(" p = ", " p\u{a0}=\u{a0}")
+        .replace("R-hat", "R\u{2011}hat")
 }
 
 fn table(parameters: &[ParameterReport]) -> Markup {

@@ -61,8 +61,8 @@ fn nothing_at_all() {
     no_broken_number(&CalibrationReport::default());
 }
 
-#[test]
-fn one_value_and_one_parameter() {
+/// One value and one parameter.
+fn small() -> CalibrationReport {
     let mut report = fixture::calibration();
     report.parameters.truncate(1);
     report.times.truncate(1);
@@ -72,6 +72,12 @@ fn one_value_and_one_parameter() {
     report.autocorrelation.clear();
     report.bands = Bands::default();
     report.track.x.truncate(1);
+    report
+}
+
+#[test]
+fn one_value_and_one_parameter() {
+    let report = small();
     no_broken_number(&report);
     let names: Vec<_> = pictures(&report).iter().map(|p| p.name).collect();
     assert_eq!(names, ["recording", "densities", "traces", "residuals"]);
@@ -156,6 +162,7 @@ fn many_parameters_and_many_values() {
 fn write_to_look_at() -> std::io::Result<()> {
     let folder = std::env::temp_dir().join("couloir-report");
     write(&folder, &fixture::calibration())?;
+    write(&folder.join("small"), &small())?;
     write(&folder.join("large"), &large())
 }
 

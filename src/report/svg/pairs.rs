@@ -5,7 +5,7 @@ use super::axes::Scale;
 use super::canvas::{Anchor, Canvas, FONT, Frame, Point, WIDTH};
 use super::palette::{FLOW, GREY, INK, POSTERIOR, Pen};
 use crate::report::digits::ticks;
-use crate::report::text::{shorten, thinned};
+use crate::report::text::{plain, shorten, thinned, wrap};
 use crate::report::{CalibrationReport, ParameterReport};
 
 /// How many parameters are paired.
@@ -130,7 +130,8 @@ fn bars(canvas: &mut Canvas, frame: Frame, p: &ParameterReport) {
     let counts = histogram(&p.pooled, scale);
     let most = counts.iter().copied().max().unwrap_or(0).max(1) as f64;
     let step = frame.width() / BARS as f64;
-    let room = frame.height() - FONT - 12.0;
+    let name = name_lines(&p.name, (frame.width() / 8.2) as usize);
+    let room = frame.height() - (FONT + 2.0) * name.len() as f64 - 10.0;
     for (i, count) in counts.into_iter().enumerate().filter(|c| c.1 > 0) {
         let left = frame.left + step * i as f64;
         let top = frame.bottom - room * count as f64 / most;
@@ -138,8 +139,16 @@ fn bars(canvas: &mut Canvas, frame: Frame, p: &ParameterReport) {
         canvas.rectangle(bar, FLOW, 1.0);
     }
     border(canvas, frame);
-    let name = shorten(&p.name, (frame.width() / 8.5) as usize);
-    canvas.heading((frame.left + 6.0, frame.top + FONT + 3.0), &name);
+    let mut y = frame.top + 3.0;
+    for line in name {
+        y += FONT + 1.0;
+        canvas.heading((frame.left + 6.0, y), &line);
+    }
+}
+
+/// The name on at most two lines of so many characters.
+fn name_lines(name: &str, most: usize) -> Vec<String> {
+    wrap(&shorten(&plain(name), 2 * most), most).into_iter().take(2).collect()
 }
 
 fn histogram(draws: &[f64], scale: Scale) -> [usize; BARS] {

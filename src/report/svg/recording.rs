@@ -68,7 +68,8 @@ fn value_scale(report: &CalibrationReport) -> Scale {
     let b = &report.bands;
     let posterior = report.values.iter().chain(&b.full_low);
     let posterior = posterior.chain(&b.full_high).chain(&b.median);
-    let base = Scale::of(posterior.copied()).padded(0.04);
+    let bars = error_bars(report).flat_map(|(_, low, high)| [low, high]);
+    let base = Scale::of(posterior.copied().chain(bars)).padded(0.04);
     let Some(prior) = &report.prior_bands else { return base };
     let edges = prior.flow_low.iter().chain(&prior.flow_high);
     let prior = Scale::of(edges.copied()).padded(0.02);
@@ -97,6 +98,17 @@ fn edge(axes: &Axes, times: &[f64], values: &[f64]) -> Vec<(f64, f64)> {
     kept.map(|i| axes.at(times[i], values[i])).collect()
 }
 
+/// Time and both ends of each error bar, where they are known and few.
+fn error_bars(
+    report: &CalibrationReport,
+) -> impl Iterator<Item = (f64, f64, f64)> {
+    let few = report.values.len() <= BARRED;
+    let errors = report.standard_errors.iter().filter(move |_| few).flatten();
+    let values = report.times.iter().zip(&report.values);
+    let bars = values.zip(errors).filter(|(_, se)| se.is_finite());
+    bars.map(|((t, v), se)| (*t, v - se, v + se))
+}
+
 /// Draws the values and returns how many.
 fn draw_values(
     canvas: &mut Canvas,
@@ -106,14 +118,9 @@ fn draw_values(
     let all = axes.points(&report.times, &report.values);
     let kept = thinned(all.len(), VALUES);
     let points: Vec<_> = kept.iter().map(|&i| all[i]).collect();
-    if let Some(errors) = &report.standard_errors
-        && all.len() <= BARRED
-    {
-        let rows = report.times.iter().zip(&report.values).zip(errors);
-        for ((&t, &v), &se) in rows.filter(|r| r.1.is_finite()) {
-            let (low, high) = (axes.at(t, v - se), axes.at(t, v + se));
-            canvas.line(low, high, Pen::new(INK, 1.0));
-        }
+    for (t, low, high) in error_bars(report) {
+        let ends = (axes.at(t, low), axes.at(t, high));
+        canvas.line(ends.0, ends.1, Pen::new(INK, 1.0));
     }
     let size = if points.len() > 300 { 2.5 } else { 5.0 };
     canvas.dots(&points, Pen::new(INK, size));
@@ -121,14 +128,18 @@ fn draw_values(
 }
 
 fn caption(report: &CalibrationReport, shown: usize) -> String {
-    let mut out = "Nine of ten recorded values should lie in the outer band. \
-         The inner band holds nine of ten flows that the parameters left \
-         open by the recording produce; the outer band adds the errors."
-        .to_owned();
+    let mut out = if report.bands.times.is_empty() {
+        "The recorded values."
+    } else {
+        "Nine of ten recorded values should lie in the outer band. The inner \
+         band holds nine of ten flows that the parameters left open by the \
+         recording produce; the outer band adds the errors."
+    }
+    .to_owned();
     if report.prior_bands.is_some() {
         out.push_str(
-            " Dashed: the same range of flows before the recording was \
-             used, drawn as far as it fits.",
+            " Dashed: nine of ten flows before the recording was used, \
+             drawn as far as they fit.",
         );
     }
     let count = report.times.len().min(report.values.len());

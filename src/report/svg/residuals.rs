@@ -29,11 +29,13 @@ pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
     let lower = if lags > 0 { LOWER + BETWEEN } else { 0.0 };
     let mut canvas = Canvas::new("residuals", 34.0 + UPPER + 46.0 + lower);
     let left = 62.0;
-    let keys = [
+    let mut keys = vec![
         (Key::Dot(DOT), "innovation"),
-        (Key::Fill(POSTERIOR), "autocorrelation"),
         (Key::Line(BOUND), "95 % of pure noise lies inside"),
     ];
+    if lags > 0 {
+        keys.push((Key::Fill(POSTERIOR), "autocorrelation"));
+    }
     let top = legend(&mut canvas, left, 2.0, &keys);
     let (right, bottom) = (WIDTH - 14.0, top + UPPER);
     over_time(&mut canvas, Frame { left, top, right, bottom }, report);

@@ -1,0 +1,163 @@
+//! `couloir bench`: every backend on one event, side by side.
+
+use clap::Args;
+use serde_json::json;
+
+use super::calibrate::{pretty, wrapped};
+use super::progress::Told;
+use super::{Output, Subject, Work, width};
+use crate::draws::summarise;
+use crate::error::Result;
+use crate::infer::{BACKENDS, Inference, infer};
+use crate::io::write_all;
+use crate::model::Posterior;
+use crate::physics::friction::Laws;
+use crate::seed::Seed;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    subject: Subject,
+    #[command(flatten)]
+    work: Work,
+    #[command(flatten)]
+    output: Output,
+}
+
+/// What one backend did.
+struct Row {
+    name: &'static str,
+    found: Inference,
+    /// The smallest bulk ESS of any parameter.
+    effective: Option<f64>,
+    rhat: Option<f64>,
+}
+
+impl Row {
+    fn per_second(&self) -> Option<f64> {
+        self.effective.map(|e| e / self.found.cost.seconds)
+    }
+
+    fn per_simulation(&self) -> Option<f64> {
+        self.effective.map(|e| e / self.found.cost.simulations as f64)
+    }
+}
+
+impl Arguments {
+    pub(super) fn run(&self, laws: &Laws) -> Result<String> {
+        let model = self.subject.model(laws)?;
+        let posterior = Posterior::new(&model)?;
+        let told = Told::new();
+        let mut rows = Vec::new();
+        for entry in BACKENDS {
+            let backend = (entry.make)(&self.work.effort());
+            let seed = Seed::new(self.work.seed);
+            let found = infer(backend.as_ref(), &posterior, seed, &told)?;
+            rows.push(row(entry.name, found));
+        }
+        drop(told);
+        let name = model.event().name();
+        let document = pretty(&self.document(name, &rows));
+        if let Some(folder) = &self.output.out {
+            write_all(folder, &[("bench.json", document.clone())])?;
+        }
+        if self.output.json {
+            return Ok(document);
+        }
+        let title = format!("{name}: {}, {}", model.friction(), model.noise());
+        Ok(tell(&title, &rows))
+    }
+
+    fn document(&self, event: &str, rows: &[Row]) -> serde_json::Value {
+        let backends: Vec<_> = rows
+            .iter()
+            .map(|row| {
+                json!({
+                    "backend": row.name,
+                    "seconds": row.found.cost.seconds,
+                    "simulations": row.found.cost.simulations,
+                    "ess_min": row.effective,
+                    "ess_per_second": row.per_second(),
+                    "ess_per_simulation": row.per_simulation(),
+                    "rhat_max": row.rhat,
+                    "log_evidence": row.found.evidence.as_ref().map(|e| {
+                        json!({"value": e.log, "se": e.se})
+                    }),
+                    "mode_log_density":
+                        row.found.mode.as_ref().map(|m| m.log_density),
+                    "warnings": row.found.warnings,
+                })
+            })
+            .collect();
+        json!({
+            "schema": 1,
+            "event": event,
+            "seed": self.work.seed,
+            "backends": backends,
+        })
+    }
+}
+
+fn row(name: &'static str, found: Inference) -> Row {
+    let summaries = found.draws.as_ref().map(summarise);
+    let least = |f: fn(&crate::draws::Summary) -> f64| {
+        summaries.as_ref().map(|s| s.iter().map(f).fold(f64::NAN, f64::min))
+    };
+    let most = summaries
+        .as_ref()
+        .map(|s| s.iter().map(|s| s.rhat).fold(f64::NAN, f64::max));
+    Row { name, effective: least(|s| s.ess_bulk), rhat: most, found }
+}
+
+fn tell(title: &str, rows: &[Row]) -> String {
+    let mut text = wrapped(title, width());
+    text.push_str(&format!(
+        "\n{:12} {:>7} {:>9} {:>7} {:>8} {:>8} {:>6} {:>16}\n",
+        "backend",
+        "s",
+        "sims",
+        "ESS",
+        "ESS/s",
+        "ESS/sim",
+        "R-hat",
+        "ln evidence"
+    ));
+    for row in rows {
+        let number = |x: Option<f64>, digits: usize| {
+            x.filter(|x| x.is_finite())
+                .map_or("-".to_owned(), |x| format!("{x:.digits$}"))
+        };
+        let evidence =
+            row.found.evidence.as_ref().map_or("-".into(), |e| {
+                format!("{:.2} +- {:.2}", e.log, e.se)
+            });
+        text.push_str(&format!(
+            "{:12} {:7.2} {:9} {:>7} {:>8} {:>8} {:>6} {:>16}\n",
+            row.name,
+            row.found.cost.seconds,
+            row.found.cost.simulations,
+            number(row.effective, 0),
+            number(row.per_second(), 0),
+            number(row.per_simulation(), 4),
+            number(row.rhat, 3),
+            evidence,
+        ));
+    }
+    for row in rows {
+        if let Some(mode) = &row.found.mode {
+            text.push_str(&format!(
+                "\n{}: mode with ln(prior x likelihood) = {:.4}\n",
+                row.name, mode.log_density
+            ));
+        }
+    }
+    text.push('\n');
+    for row in rows {
+        for warning in &row.found.warnings {
+            let line = format!("Warning, {}: {warning}", row.name);
+            text.push_str(&wrapped(&line, width()));
+        }
+    }
+    text.push_str("ESS: the least of any parameter's bulk effective draws.\n");
+    text
+}

@@ -1,0 +1,191 @@
+//! `couloir simulate`: the motion with given parameter values.
+
+use clap::Args;
+use serde_json::json;
+
+use super::calibrate::pretty;
+use super::{Output, Subject};
+use crate::error::{Error, Result, Stop};
+use crate::io::write_all;
+use crate::model::Assembled;
+use crate::physics::State;
+use crate::physics::friction::Laws;
+use crate::scalar::Plain;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    subject: Subject,
+    /// A parameter's value, such as mu=0.3; give it as often as needed; the
+    /// others stand at the middle of their priors
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    values: Vec<String>,
+    #[command(flatten)]
+    output: Output,
+}
+
+impl Arguments {
+    pub(super) fn run(&self, laws: &Laws) -> Result<String> {
+        let model = self.subject.model(laws)?;
+        let values = self.values(&model)?;
+        let times = times(&model);
+        let no_flow = |stop| match stop {
+            Stop::Reject(reason) => Error::input(format!(
+                "these values have no flow: {reason}; change --set"
+            )),
+            Stop::Fail(error) => error,
+        };
+        let states = model.motion(&values, &times).map_err(no_flow)?;
+        let rest = model.rest(&values).map_err(no_flow)?;
+        let rest = rest.map(|r| (r.time.value(), r.distance.value()));
+        let document =
+            pretty(&document(&model, &values, &times, &states, rest));
+        if let Some(folder) = &self.output.out {
+            let files = [
+                ("simulation.csv", csv(&times, &states)),
+                ("simulation.json", document.clone()),
+            ];
+            write_all(folder, &files)?;
+        }
+        if self.output.json {
+            return Ok(document);
+        }
+        Ok(tell(&model, &values, &times, &states, rest))
+    }
+
+    /// The parameters' values: those set, the prior's median for the rest.
+    fn values(&self, model: &Assembled) -> Result<Vec<f64>> {
+        let names: Vec<&str> = model.priors().map(|(name, _)| name).collect();
+        let mut values: Vec<Option<f64>> =
+            model.priors().map(|(_, prior)| prior.quantile(0.5)).collect();
+        for text in &self.values {
+            let (name, value) = text.split_once('=').ok_or_else(|| {
+                Error::input(format!("--set {text:?}: expected NAME=VALUE"))
+            })?;
+            let place = names.iter().position(|n| *n == name.trim());
+            let Some(place) = place else {
+                return Err(Error::input(format!(
+                    "--set {text:?}: the model has no parameter {:?}; it has \
+                     {}",
+                    name.trim(),
+                    names.join(", ")
+                )));
+            };
+            let value = value.trim().parse::<f64>().ok();
+            values[place] = value.filter(|v| v.is_finite());
+            if values[place].is_none() {
+                return Err(Error::input(format!(
+                    "--set {text:?}: expected a finite number after ="
+                )));
+            }
+        }
+        let missing = values.iter().position(Option::is_none);
+        if let Some(i) = missing.filter(|i| *i < model.friction_dimension()) {
+            return Err(Error::input(format!(
+                "{} has a flat prior and no middle; give it with --set {}=..",
+                names[i], names[i]
+            )));
+        }
+        Ok(values.into_iter().map(|v| v.unwrap_or(0.0)).collect())
+    }
+}
+
+/// The recording's own times, with t = 0 before them.
+fn times(model: &Assembled) -> Vec<f64> {
+    let mut times = vec![0.0];
+    for series in model.event().recordings() {
+        times.extend(series.times().iter().filter(|t| **t > 0.0));
+    }
+    times
+}
+
+fn csv(times: &[f64], states: &[State<Plain>]) -> String {
+    let mut text = String::from("t,velocity,distance,acceleration\n");
+    for (t, s) in times.iter().zip(states) {
+        text.push_str(&format!(
+            "{t},{},{},{}\n",
+            s.speed.value(),
+            s.distance.value(),
+            s.acceleration.value()
+        ));
+    }
+    text
+}
+
+fn document(
+    model: &Assembled,
+    values: &[f64],
+    times: &[f64],
+    states: &[State<Plain>],
+    rest: Option<(f64, f64)>,
+) -> serde_json::Value {
+    let laws = model.friction_dimension();
+    let parameters: serde_json::Map<String, serde_json::Value> = model
+        .priors()
+        .zip(values)
+        .take(laws)
+        .map(|((name, _), value)| (name.to_owned(), json!(value)))
+        .collect();
+    let column = |f: fn(&State<Plain>) -> f64| -> Vec<f64> {
+        states.iter().map(f).collect()
+    };
+    json!({
+        "schema": 1,
+        "event": model.event().name(),
+        "model": {"friction": model.friction()},
+        "parameters": parameters,
+        "t": times,
+        "velocity": column(|s| s.speed.value()),
+        "distance": column(|s| s.distance.value()),
+        "acceleration": column(|s| s.acceleration.value()),
+        "rest": rest.map(|(t, s)| json!({"t": t, "distance": s})),
+    })
+}
+
+/// How many rows the terminal shows.
+const ROWS: usize = 40;
+
+fn tell(
+    model: &Assembled,
+    values: &[f64],
+    times: &[f64],
+    states: &[State<Plain>],
+    rest: Option<(f64, f64)>,
+) -> String {
+    let laws = model.friction_dimension();
+    let set: Vec<String> = model
+        .priors()
+        .zip(values)
+        .take(laws)
+        .map(|((name, _), value)| format!("{name} = {value:.6}"))
+        .collect();
+    let mut text = format!("{}: {}\n", model.friction(), set.join(", "));
+    text.push_str(&format!(
+        "\n{:>9} {:>11} {:>12} {:>14}\n{:>9} {:>11} {:>12} {:>14}\n",
+        "time", "speed", "distance", "acceleration", "s", "m/s", "m", "m/s2"
+    ));
+    let step = times.len().div_ceil(ROWS).max(1);
+    for (t, s) in times.iter().zip(states).step_by(step) {
+        text.push_str(&format!(
+            "{t:9.2} {:11.3} {:12.2} {:14.4}\n",
+            s.speed.value(),
+            s.distance.value(),
+            s.acceleration.value()
+        ));
+    }
+    if step > 1 {
+        text.push_str(&format!(
+            "(every {step}th of {} rows; --out writes them all)\n",
+            times.len()
+        ));
+    }
+    text.push_str(&match rest {
+        Some((t, s)) => {
+            format!("\nThe mass comes to rest at {t:.2} s, {s:.1} m.\n")
+        }
+        None => "\nThe mass never comes to rest: the last slope of the track \
+                 is steeper than friction can hold.\n"
+            .to_owned(),
+    });
+    text
+}

@@ -1,0 +1,56 @@
+//! From the command line to a model: the event, with what was changed of it.
+
+use super::Subject;
+use crate::error::{Error, Result};
+use crate::io::{self, EventFile};
+use crate::model::Assembled;
+use crate::noise;
+use crate::physics::friction::Laws;
+
+impl Subject {
+    /// The event, the embedded one where none was named.
+    pub(super) fn load(&self, laws: &Laws) -> Result<EventFile> {
+        match &self.event {
+            Some(path) => io::load(path, laws),
+            None => io::coastdown(laws),
+        }
+    }
+
+    /// The model, with the laws that the command line may have changed.
+    pub(super) fn model(&self, laws: &Laws) -> Result<Assembled> {
+        let file = self.load(laws)?;
+        let own = self.friction.is_none() && self.noise.is_none();
+        let place = file.path.display().to_string();
+        let friction = self.friction.clone();
+        let noise = self.noise.clone();
+        let priors = file.priors.clone();
+        let model = assemble(file, laws, friction, noise)?;
+        if own {
+            model.check_priors(&priors).map_err(|e| e.within(place))?;
+        }
+        Ok(model)
+    }
+}
+
+/// A model of an event's own laws, or of others by name.
+pub(super) fn assemble(
+    file: EventFile,
+    laws: &Laws,
+    friction: Option<String>,
+    noise: Option<String>,
+) -> Result<Assembled> {
+    let friction = match friction {
+        Some(text) => laws.parse(&text).map_err(|e| e.within("--friction"))?,
+        None => file.friction,
+    };
+    let noise = match noise {
+        Some(text) => noise::parse(&text).map_err(|e| e.within("--noise"))?,
+        None => file.noise,
+    };
+    let place = file.path.display().to_string();
+    if file.event.recordings().next().is_none() {
+        return Err(Error::input("the event has no recording").within(place));
+    }
+    Assembled::new(file.event, friction, noise, &file.priors)
+        .map_err(|e| e.within(place))
+}
