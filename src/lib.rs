@@ -2,9 +2,19 @@
 #[macro_use]
 pub mod scalar;
 pub mod block;
+pub mod context;
+pub mod declared;
 pub mod error;
+pub mod model;
 pub mod noise;
+pub mod observe;
+pub mod physics;
 pub mod prior;
 pub mod seed;
+
+pub use declared::Declared;
 pub use error::{Error, Outcome, Result, Stop};
+pub use model::{Label, Model, Number, Program, Run};
+pub use observe::{Event, Flow, Series};
+pub use scalar::Real;
 pub use seed::Seed;

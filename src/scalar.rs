@@ -38,6 +38,8 @@ pub trait Kind: Copy + Debug + Default + Send + Sync + 'static {
     fn constant(value: f64) -> Self::Repr;
     /// A number that is the coordinate along `direction`.
     fn variable(value: f64, direction: usize) -> Self::Repr;
+    /// A number of given value and partial derivatives.
+    fn assemble(value: f64, partial: impl Fn(usize) -> f64) -> Self::Repr;
     /// The value of a number.
     fn value(x: &Self::Repr) -> f64;
     /// Its derivative along `direction`; 0 outside the kind's directions.
@@ -73,6 +75,10 @@ impl Kind for Plain {
     }
     #[inline(always)]
     fn variable(value: f64, _: usize) -> f64 {
+        value
+    }
+    #[inline(always)]
+    fn assemble(value: f64, _: impl Fn(usize) -> f64) -> f64 {
         value
     }
     #[inline(always)]
@@ -115,6 +121,10 @@ impl<const N: usize> Kind for Grad<N> {
             *slot = 1.0;
         }
         Dual { value, partials }
+    }
+    #[inline(always)]
+    fn assemble(value: f64, partial: impl Fn(usize) -> f64) -> Dual<N> {
+        Dual { value, partials: std::array::from_fn(partial) }
     }
     #[inline(always)]
     fn value(x: &Dual<N>) -> f64 {
@@ -163,6 +173,11 @@ impl<K: Kind> Real<K> {
     #[inline(always)]
     pub fn variable(value: f64, direction: usize) -> Self {
         Self(K::variable(value, direction))
+    }
+
+    /// A number of given value and partial derivatives.
+    pub fn assemble(value: f64, partial: impl Fn(usize) -> f64) -> Self {
+        Self(K::assemble(value, partial))
     }
 
     /// The value, without derivatives.
@@ -308,6 +323,13 @@ impl<K: Kind> Real<K> {
     #[inline(always)]
     pub fn squared(self) -> Self {
         self * self
+    }
+
+    /// Whether this is 0 and stays 0 along every direction.
+    #[inline(always)]
+    pub fn is_constantly_zero(self) -> bool {
+        self.value() == 0.0
+            && (0..K::DIRECTIONS).all(|i| self.partial(i) == 0.0)
     }
 
     /// Whether the value and all derivatives are finite.

@@ -1,0 +1,177 @@
+//! Who listens to a run: names, pointwise likelihood, replicates.
+
+use super::run::Label;
+use crate::error::{Outcome, Stop};
+use crate::noise::Noise;
+use crate::observe::Series;
+use crate::prior::{Prior, Support};
+use crate::scalar::{Kind, Plain, Real};
+use crate::seed::Rng;
+
+/// A parameter as the body declares it.
+#[derive(Clone, Copy)]
+pub struct Declaration<'a, K: Kind> {
+    /// Its name and unit.
+    pub label: &'a Label,
+    /// Its value in this run.
+    pub value: f64,
+    /// Its prior, given the parameters above it.
+    pub prior: &'a dyn Prior<K>,
+}
+
+impl<K: Kind> std::fmt::Debug for Declaration<'_, K> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} = {}", self.label.name(), self.value)
+    }
+}
+
+/// Hears what happens in a run; every method may be left out.
+pub trait Listener<K: Kind> {
+    /// A parameter was declared.
+    fn parameter(&mut self, _declaration: &Declaration<'_, K>) {}
+
+    /// A series was compared: residuals are recorded minus predicted.
+    ///
+    /// # Errors
+    /// Whatever should stop the run.
+    fn series(
+        &mut self,
+        _series: &Series,
+        _residuals: &[Real<K>],
+        _noise: &dyn Noise<K>,
+    ) -> Outcome {
+        Ok(())
+    }
+
+    /// One value was scored by itself.
+    fn element(
+        &mut self,
+        _value: f64,
+        _log_density: Real<K>,
+        _distribution: &dyn Prior<K>,
+    ) {
+    }
+}
+
+impl<K: Kind> std::fmt::Debug for dyn Listener<K> + '_ {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Listener")
+    }
+}
+
+/// What one run said of the model at one point.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Collected {
+    /// The parameters' names.
+    pub names: Vec<String>,
+    /// Their units.
+    pub units: Vec<String>,
+    /// Their values as named.
+    pub natural: Vec<f64>,
+    /// Their places on the real line.
+    pub line: Vec<f64>,
+    /// Whether each prior is proper.
+    pub proper: Vec<bool>,
+    /// Where each prior is positive: lower and upper bound.
+    pub bounds: Vec<(f64, f64)>,
+    /// ln p of each datum given those before it.
+    pub pointwise: Vec<f64>,
+    /// What the model predicts for each value of each series.
+    pub predictions: Vec<Vec<f64>>,
+    /// Standardised innovations, series by series.
+    pub innovations: Vec<Vec<f64>>,
+}
+
+/// Collects everything at once.
+#[derive(Debug, Default)]
+pub struct Collector {
+    /// What was collected.
+    pub collected: Collected,
+}
+
+impl Listener<Plain> for Collector {
+    fn parameter(&mut self, declaration: &Declaration<'_, Plain>) {
+        let c = &mut self.collected;
+        let support = declaration.prior.support();
+        c.names.push(declaration.label.name());
+        c.units.push(declaration.label.unit().to_owned());
+        c.natural.push(declaration.value);
+        c.line.push(support.to_line(declaration.value));
+        c.proper.push(declaration.prior.quantile(0.5).is_some());
+        c.bounds.push(match support {
+            Support::Line => (f64::NEG_INFINITY, f64::INFINITY),
+            Support::Above(low) => (low.value(), f64::INFINITY),
+            Support::Between(low, high) => (low.value(), high.value()),
+        });
+    }
+
+    fn series(
+        &mut self,
+        series: &Series,
+        residuals: &[Real<Plain>],
+        noise: &dyn Noise<Plain>,
+    ) -> Outcome {
+        let c = &mut self.collected;
+        let values = series.values().iter();
+        let predicted = values.zip(residuals).map(|(v, r)| v - r.value());
+        c.predictions.push(predicted.collect());
+        let mut innovations = Vec::with_capacity(residuals.len());
+        noise.walk(series.grid(), residuals, &mut |value| {
+            c.pointwise.push(value.log_density.value());
+            innovations.push(value.innovation);
+        })?;
+        c.innovations.push(innovations);
+        Ok(())
+    }
+
+    fn element(
+        &mut self,
+        _: f64,
+        log_density: Real<Plain>,
+        _: &dyn Prior<Plain>,
+    ) {
+        self.collected.pointwise.push(log_density.value());
+    }
+}
+
+/// Draws what might have been recorded instead: prediction plus noise.
+#[derive(Debug)]
+pub struct Replicates<'a> {
+    rng: &'a mut Rng,
+    /// One list of values for each series.
+    pub series: Vec<Vec<f64>>,
+    /// One value for each datum scored by itself.
+    pub elements: Vec<f64>,
+}
+
+impl<'a> Replicates<'a> {
+    /// With the generator that the errors are drawn from.
+    pub fn new(rng: &'a mut Rng) -> Self {
+        Self { rng, series: Vec::new(), elements: Vec::new() }
+    }
+}
+
+impl Listener<Plain> for Replicates<'_> {
+    fn series(
+        &mut self,
+        series: &Series,
+        residuals: &[Real<Plain>],
+        noise: &dyn Noise<Plain>,
+    ) -> Result<(), Stop> {
+        let errors = noise.draw(series.grid(), self.rng)?;
+        let values = series.values().iter().zip(residuals).zip(errors);
+        self.series
+            .push(values.map(|((v, r), e)| v - r.value() + e).collect());
+        Ok(())
+    }
+
+    fn element(
+        &mut self,
+        _: f64,
+        _: Real<Plain>,
+        distribution: &dyn Prior<Plain>,
+    ) {
+        let draw = distribution.draw(self.rng).unwrap_or(f64::NAN);
+        self.elements.push(draw);
+    }
+}

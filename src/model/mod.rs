@@ -1,0 +1,17 @@
+//! Models: what is unknown, and what follows from given values.
+//!
+//! A [`Program`] is one generic function, written by the `model!` macro or by
+//! hand: it declares parameters and scores data. Everything that is asked of
+//! a model (log density, gradient, pointwise likelihood, replicates) is the
+//! same run with another listener. [`Model`] is the object-safe face of a
+//! program; every program has it.
+
+mod listener;
+mod number;
+mod program;
+mod run;
+
+pub use listener::{Collected, Collector, Declaration, Listener, Replicates};
+pub use number::Number;
+pub use program::{Density, Model, Point, Program, Weights};
+pub use run::{Label, Run};

@@ -1,0 +1,32 @@
+//! The kinds of number that models are evaluated with.
+//!
+//! A model's body is generic; it is compiled for plain numbers and for three
+//! widths of gradient. More parameters than the widest take several passes.
+
+use crate::context::Context;
+use crate::physics::friction::LawKind;
+use crate::scalar::{Grad, Kind, Plain};
+
+/// A kind of number with a home for its buffers on every thread.
+pub trait Number: Kind + LawKind {
+    /// Runs `work` with this thread's context for this kind.
+    fn with_context<R>(work: impl FnOnce(&Context<Self>) -> R) -> R;
+}
+
+macro_rules! number {
+    ($($kind:ty),*) => {
+        $(impl Number for $kind {
+            #[inline]
+            fn with_context<R>(
+                work: impl FnOnce(&Context<Self>) -> R,
+            ) -> R {
+                thread_local! {
+                    static CONTEXT: Context<$kind> =
+                        const { Context::new() };
+                }
+                CONTEXT.with(work)
+            }
+        })*
+    };
+}
+number!(Plain, Grad<2>, Grad<4>, Grad<8>);

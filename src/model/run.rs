@@ -1,0 +1,291 @@
+//! One run of a model's body.
+//!
+//! The body asks for its parameters and offers its data; the run decides
+//! where values come from (a point on the real line, a point as named, draws
+//! from the prior) and who listens.
+
+use super::listener::{Declaration, Listener};
+use crate::block::List;
+use crate::context::Context;
+use crate::declared::Declared;
+use crate::error::{Error, Outcome, Stop};
+use crate::noise::Noise;
+use crate::observe::{Prediction, Series};
+use crate::prior::{Prior, Support};
+use crate::scalar::{Kind, Real};
+use crate::seed::Rng;
+
+/// The name and unit of a parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Label {
+    name: &'static str,
+    unit: &'static str,
+    index: Option<usize>,
+}
+
+impl Label {
+    /// A parameter of this name; unit "1" for a pure number.
+    pub const fn new(name: &'static str, unit: &'static str) -> Self {
+        Self { name, unit, index: None }
+    }
+
+    /// The `index`-th of several (from 0); its name counts from 1.
+    #[must_use]
+    pub const fn at(self, index: usize) -> Self {
+        Self { index: Some(index), ..self }
+    }
+
+    /// Its name, with the index in brackets where it has one.
+    pub fn name(&self) -> String {
+        match self.index {
+            Some(i) => format!("{}[{}]", self.name, i + 1),
+            None => self.name.to_owned(),
+        }
+    }
+
+    /// Its unit.
+    pub fn unit(&self) -> &'static str {
+        self.unit
+    }
+}
+
+/// Where a run takes its parameters' values from.
+#[derive(Debug)]
+pub(super) enum Source<'r> {
+    /// Places on the real line; derivatives are taken along those from
+    /// `first` on, as many as the kind carries.
+    Line { z: &'r [f64], first: usize },
+    /// Values as named; outside a support the run is rejected.
+    Natural { x: &'r [f64] },
+    /// Draws from the prior.
+    Prior { rng: &'r mut Rng },
+    /// The middle of the line for every parameter, however many there are.
+    Middle,
+}
+
+/// One run of a model's body over numbers of kind `K`.
+#[derive(Debug)]
+pub struct Run<'r, K: Kind> {
+    context: &'r Context<K>,
+    source: Source<'r>,
+    position: usize,
+    pub(super) log_prior: Real<K>,
+    pub(super) log_jacobian: Real<K>,
+    pub(super) log_likelihood: Real<K>,
+    listener: Option<&'r mut dyn Listener<K>>,
+}
+
+impl<'r, K: Kind> Run<'r, K> {
+    pub(super) fn new(
+        context: &'r Context<K>,
+        source: Source<'r>,
+        listener: Option<&'r mut dyn Listener<K>>,
+    ) -> Self {
+        let zero = Real::new(0.0);
+        Self {
+            context,
+            source,
+            position: 0,
+            log_prior: zero,
+            log_jacobian: zero,
+            log_likelihood: zero,
+            listener,
+        }
+    }
+
+    /// How many parameters were asked for so far.
+    pub(super) fn position(&self) -> usize {
+        self.position
+    }
+
+    /// Declares a scalar parameter and takes its value.
+    ///
+    /// # Errors
+    /// [`Stop::Reject`] where the value lies outside the prior's support.
+    #[inline]
+    pub fn scalar<P: Prior<K>>(
+        &mut self,
+        label: Label,
+        prior: P,
+    ) -> Result<Real<K>, Stop> {
+        let x = self.value(&prior)?;
+        self.position += 1;
+        let log_density = prior.log_density(x);
+        self.log_prior += log_density;
+        if let Some(listener) = &mut self.listener {
+            listener.parameter(&Declaration {
+                label: &label,
+                value: x.value(),
+                prior: &prior,
+            });
+        }
+        if log_density.value() == f64::NEG_INFINITY {
+            return Err(Stop::Reject("a parameter lies outside its prior"));
+        }
+        Ok(x)
+    }
+
+    fn value<P: Prior<K>>(&mut self, prior: &P) -> Result<Real<K>, Stop> {
+        let i = self.position;
+        match &mut self.source {
+            Source::Line { z, first } => {
+                let direction = i.wrapping_sub(*first);
+                let z = Real::variable(*z.get(i).ok_or(TOO_FEW)?, direction);
+                let (x, log_jacobian) = prior.support().from_line(z);
+                self.log_jacobian += log_jacobian;
+                Ok(x)
+            }
+            Source::Natural { x } => {
+                Ok(Real::variable(*x.get(i).ok_or(TOO_FEW)?, i))
+            }
+            Source::Prior { rng } => {
+                let draw = prior.draw(rng).ok_or(Stop::Reject(
+                    "a prior has no draws: it is improper, or its arguments \
+                     are impossible",
+                ))?;
+                Ok(Real::new(draw))
+            }
+            Source::Middle => Ok(prior.support().from_line(Real::new(0.0)).0),
+        }
+    }
+
+    /// Declares a vector of `n` parameters with the same prior.
+    ///
+    /// # Errors
+    /// As [`Run::scalar`].
+    pub fn vector<P: Prior<K>>(
+        &mut self,
+        label: Label,
+        n: usize,
+        prior: P,
+    ) -> Result<List<Real<K>>, Stop> {
+        (0..n).map(|i| self.scalar(label.at(i), &prior)).collect()
+    }
+
+    /// Declares a block.
+    #[inline]
+    pub fn declare<B>(&mut self, block: B) -> Declared<'r, K, B> {
+        Declared::new(block, self.context)
+    }
+
+    /// Scores a series against what the model predicts, with a noise.
+    ///
+    /// # Errors
+    /// [`Stop::Reject`] where no such noise exists, [`Stop::Fail`] where
+    /// series, prediction and noise do not fit together.
+    pub fn observe<N: Noise<K>>(
+        &mut self,
+        series: &impl AsRef<Series>,
+        prediction: impl Prediction<K>,
+        noise: &N,
+    ) -> Outcome {
+        let series = series.as_ref();
+        if series.is_empty() {
+            return Err(Stop::Fail(Error::input(format!(
+                "the event has no {} recording to compare with",
+                series.quantity()
+            ))));
+        }
+        noise.check(series.grid())?;
+        let mut residuals = self.context.buffer();
+        let mut values = series.values().iter();
+        prediction.predict(series, |predicted| {
+            let value = values.next().copied().unwrap_or(f64::NAN);
+            residuals.push(value - predicted);
+        })?;
+        if let Some(listener) = &mut self.listener {
+            listener.series(series, &residuals, noise)?;
+        }
+        self.log_likelihood +=
+            noise.log_likelihood(series.grid(), &residuals)?;
+        Ok(())
+    }
+
+    /// Scores each of the data against one distribution.
+    ///
+    /// # Errors
+    /// [`Stop::Reject`] where a value lies outside the distribution.
+    pub fn observe_each<P: Prior<K>>(
+        &mut self,
+        data: &(impl Data + ?Sized),
+        distribution: P,
+    ) -> Outcome {
+        for &value in data.data() {
+            let log_density = distribution.log_density(Real::new(value));
+            if let Some(listener) = &mut self.listener {
+                listener.element(value, log_density, &distribution);
+            }
+            self.log_likelihood += log_density;
+        }
+        if self.log_likelihood.value() == f64::NEG_INFINITY {
+            return Err(Stop::Reject("a value lies outside its distribution"));
+        }
+        Ok(())
+    }
+}
+
+const TOO_FEW: Stop = Stop::Reject("the point has too few coordinates");
+
+/// Numbers that were observed: one, or several.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not data",
+    label = "left of `~` stands what was recorded: a series, an `f64`, or a \
+             list of them"
+)]
+pub trait Data {
+    /// The values.
+    fn data(&self) -> &[f64];
+}
+
+impl Data for f64 {
+    fn data(&self) -> &[f64] {
+        std::slice::from_ref(self)
+    }
+}
+
+impl Data for [f64] {
+    fn data(&self) -> &[f64] {
+        self
+    }
+}
+
+impl Data for Vec<f64> {
+    fn data(&self) -> &[f64] {
+        self
+    }
+}
+
+impl<const N: usize> Data for [f64; N] {
+    fn data(&self) -> &[f64] {
+        self
+    }
+}
+
+impl Data for Series {
+    fn data(&self) -> &[f64] {
+        self.values()
+    }
+}
+
+impl<D: Data + ?Sized> Data for &D {
+    fn data(&self) -> &[f64] {
+        (**self).data()
+    }
+}
+
+/// A prior by reference is one too.
+impl<K: Kind, P: Prior<K> + ?Sized> Prior<K> for &P {
+    #[inline]
+    fn log_density(&self, x: Real<K>) -> Real<K> {
+        (**self).log_density(x)
+    }
+    fn support(&self) -> Support<K> {
+        (**self).support()
+    }
+    fn quantile(&self, p: f64) -> Option<f64> {
+        (**self).quantile(p)
+    }
+    fn draw(&self, rng: &mut Rng) -> Option<f64> {
+        (**self).draw(rng)
+    }
+}

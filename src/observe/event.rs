@@ -1,0 +1,329 @@
+//! An event: the ground, how the mass starts, and what was recorded.
+
+use super::flow::Flow;
+use super::series::{Quantity, Series};
+use crate::declared::Declared;
+use crate::error::{Error, Result, Stop};
+use crate::physics::{Friction, Path, Release, Rest, Track, rest, sample};
+use crate::scalar::{Kind, Real};
+
+/// One avalanche, or another mass that slid, with its recording.
+///
+/// ```
+/// use couloir::{Event, Series, physics::Track};
+/// let event = Event::on(Track::incline(35.0, 500.0)?)
+///     .named("a slope")
+///     .depth(1.5)
+///     .velocity(Series::velocity(vec![1.0, 2.0], vec![2.9, 5.6])?)
+///     .build()?;
+/// assert_eq!(event.velocity.len(), 2);
+/// # Ok::<(), couloir::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Event {
+    name: String,
+    track: Track,
+    depth: f64,
+    distance: f64,
+    speed: f64,
+    /// Recorded speeds; empty where none were.
+    pub velocity: Series,
+    /// Recorded distances since the release; empty where none were.
+    pub position: Series,
+    /// Recorded accelerations; empty where none were.
+    pub acceleration: Series,
+    /// Every time at which the motion is needed, increasing [s].
+    samples: Vec<f64>,
+}
+
+/// An event in the making; [`Event::on`] starts one.
+#[derive(Debug, Clone)]
+pub struct EventBuilder {
+    event: Event,
+    x: f64,
+}
+
+impl EventBuilder {
+    /// Its name, for titles.
+    #[must_use]
+    pub fn named(mut self, name: impl Into<String>) -> Self {
+        self.event.name = name.into();
+        self
+    }
+
+    /// Where the mass starts: horizontal distance \[m\], and its speed at
+    /// t = 0 \[m/s\].
+    #[must_use]
+    pub fn release(mut self, x: f64, speed: f64) -> Self {
+        self.x = x;
+        self.event.speed = speed;
+        self
+    }
+
+    /// The mean flow depth h \[m\].
+    #[must_use]
+    pub fn depth(mut self, depth: f64) -> Self {
+        self.event.depth = depth;
+        self
+    }
+
+    /// The recorded speeds.
+    #[must_use]
+    pub fn velocity(mut self, series: Series) -> Self {
+        self.event.velocity = series;
+        self
+    }
+
+    /// The recorded distances.
+    #[must_use]
+    pub fn position(mut self, series: Series) -> Self {
+        self.event.position = series;
+        self
+    }
+
+    /// The recorded accelerations.
+    #[must_use]
+    pub fn acceleration(mut self, series: Series) -> Self {
+        self.event.acceleration = series;
+        self
+    }
+
+    /// A series of whichever quantity.
+    #[must_use]
+    pub fn series(self, series: Series) -> Self {
+        match series.quantity() {
+            Quantity::Velocity => self.velocity(series),
+            Quantity::Position => self.position(series),
+            Quantity::Acceleration => self.acceleration(series),
+        }
+    }
+
+    /// The event.
+    ///
+    /// # Errors
+    /// A depth or a speed that is impossible, a release off the track, a
+    /// mass that can never move, a recording that goes further than the
+    /// track, or a value at t = 0 beside a release speed.
+    pub fn build(self) -> Result<Event> {
+        let mut event = self.event;
+        if !(event.depth > 0.0 && event.depth.is_finite()) {
+            return Err(Error::input(format!(
+                "flow.depth is {}; expected metres, more than 0",
+                event.depth
+            )));
+        }
+        if !(event.speed >= 0.0 && event.speed.is_finite()) {
+            return Err(Error::input(format!(
+                "release.velocity is {}; expected m/s, 0 or more",
+                event.speed
+            )));
+        }
+        event.distance = event
+            .track
+            .distance_at(self.x)
+            .map_err(|error| error.within("release.x"))?;
+        event.check_that_it_moves()?;
+        event.check_recordings()?;
+        event.plan();
+        Ok(event)
+    }
+}
+
+impl Event {
+    /// Starts an event on a track; depth 1 m, released at rest at the
+    /// track's first point, nothing recorded.
+    pub fn on(track: Track) -> EventBuilder {
+        let event = Self {
+            name: String::new(),
+            track,
+            depth: 1.0,
+            distance: 0.0,
+            speed: 0.0,
+            velocity: Series::absent(Quantity::Velocity),
+            position: Series::absent(Quantity::Position),
+            acceleration: Series::absent(Quantity::Acceleration),
+            samples: Vec::new(),
+        };
+        let x = event.track.points().0[0];
+        EventBuilder { event, x }
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The terrain.
+    pub fn track(&self) -> &Track {
+        &self.track
+    }
+
+    /// The mean flow depth \[m\].
+    pub fn depth(&self) -> f64 {
+        self.depth
+    }
+
+    /// Distance along the slope \[m\] and speed \[m/s\] at t = 0.
+    pub fn release<K: Kind>(&self) -> Release<K> {
+        Release { distance: self.distance.into(), speed: self.speed.into() }
+    }
+
+    /// The recorded series; most events have one.
+    pub fn recordings(&self) -> impl Iterator<Item = &Series> {
+        [&self.velocity, &self.position, &self.acceleration]
+            .into_iter()
+            .filter(|series| !series.is_empty())
+    }
+
+    /// Solves the motion under a declared friction law.
+    ///
+    /// # Errors
+    /// [`Stop::Reject`] where the law has no flow with these values.
+    #[inline]
+    pub fn slide<'a, K: Kind, L: Friction<K>>(
+        &'a self,
+        friction: &'a Declared<'_, K, L>,
+    ) -> Result<Flow<'a, K, L>, Stop> {
+        let context = friction.context();
+        context.count_slide();
+        let mut flow = Flow::new(self, friction);
+        let speed_only = self.velocity.window() == 0.0
+            && self.position.is_empty()
+            && self.acceleration.is_empty();
+        sample(
+            &self.path(),
+            friction.block(),
+            self.release(),
+            &self.samples,
+            speed_only,
+            |state| flow.push(state, speed_only),
+        )?;
+        Ok(flow)
+    }
+
+    /// Where and when the mass comes to rest under a friction law; `None` if
+    /// it never does.
+    pub(super) fn rest<K: Kind, L: Friction<K>>(
+        &self,
+        law: &L,
+    ) -> Result<Option<Rest<K>>, Stop> {
+        rest(&self.path(), law, self.release())
+    }
+
+    /// The ground the flow runs on.
+    pub fn path(&self) -> Path<'_> {
+        Path { track: &self.track, depth: self.depth }
+    }
+
+    /// The same event with another recording in place of its own of the same
+    /// quantity.
+    ///
+    /// # Errors
+    /// As in [`EventBuilder::build`].
+    pub fn with_recording(&self, series: Series) -> Result<Self> {
+        let builder = EventBuilder { event: self.clone(), x: 0.0 };
+        let mut event = builder.series(series).event;
+        event.check_recordings()?;
+        event.plan();
+        Ok(event)
+    }
+
+    fn check_that_it_moves(&self) -> Result<()> {
+        let piece = &self.track.pieces()[self.track.piece_at(self.distance)];
+        if self.speed == 0.0 && piece.pull <= 0.0 {
+            return Err(Error::input(format!(
+                "the mass never moves: it starts at rest where the slope is \
+                 {:.1} degrees (positive is downhill); start it where the \
+                 track goes down, or give release.velocity",
+                self.track.angle(self.distance).to_degrees()
+            )));
+        }
+        Ok(())
+    }
+
+    fn check_recordings(&self) -> Result<()> {
+        for series in self.recordings() {
+            if series.times()[0] == 0.0 && self.speed != 0.0 {
+                return Err(Error::input(format!(
+                    "the recording has a value at t = 0 ({}) beside \
+                     release.velocity = {}; both say how the mass starts: \
+                     drop one of them",
+                    series.values()[0],
+                    self.speed
+                )));
+            }
+            let reach = self.reach(series);
+            let left = self.track.length() - self.distance;
+            if reach > left {
+                return Err(Error::input(format!(
+                    "the recording covers {reach:.1} m, but the track has \
+                     only {left:.1} m beyond the release; extend the track, \
+                     or shorten the recording"
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// The distance that a recording itself shows \[m\]: its greatest
+    /// position, or its speeds summed by the trapezoidal rule.
+    fn reach(&self, series: &Series) -> f64 {
+        match series.quantity() {
+            Quantity::Position => {
+                series.values().iter().copied().fold(0.0, f64::max)
+            }
+            Quantity::Velocity => {
+                let (mut time, mut speed) = (0.0, self.speed);
+                let mut distance = 0.0;
+                for (t, v) in series.times().iter().zip(series.values()) {
+                    distance += 0.5 * (v + speed) * (t - time);
+                    (time, speed) = (*t, *v);
+                }
+                distance
+            }
+            Quantity::Acceleration => 0.0,
+        }
+    }
+
+    /// Works out at which times the motion is needed, and for each value of
+    /// each series which of them are its own.
+    fn plan(&mut self) {
+        let mut samples = Vec::new();
+        for series in self.recordings() {
+            for &t in series.times() {
+                samples.push(t);
+                if series.window() > 0.0 {
+                    samples.push((t - series.window()).max(0.0));
+                }
+            }
+        }
+        samples.sort_by(f64::total_cmp);
+        samples.dedup();
+        let index = |t: f64| samples.partition_point(|&s| s < t);
+        for series in
+            [&mut self.velocity, &mut self.position, &mut self.acceleration]
+        {
+            let window = series.window();
+            series.at = series.times().iter().map(|&t| index(t)).collect();
+            series.since = series
+                .times()
+                .iter()
+                .map(|&t| index((t - window).max(0.0)))
+                .collect();
+        }
+        self.samples = samples;
+    }
+
+    /// The times at which the motion is solved \[s\].
+    pub(super) fn samples(&self) -> &[f64] {
+        &self.samples
+    }
+}
+
+/// The release as plain numbers, for pictures.
+impl Event {
+    /// Distance along the slope \[m\] at which the mass starts.
+    pub fn start(&self) -> f64 {
+        Real::<crate::scalar::Plain>::new(self.distance).value()
+    }
+}

@@ -1,0 +1,13 @@
+//! Observation: from the motion to what was measured.
+//!
+//! A recording is not the state. A [`Series`] says what was measured and
+//! when, an [`Event`] holds the ground, the release and its series, and a
+//! [`Flow`] is the motion at the moments that those need.
+
+mod event;
+mod flow;
+mod series;
+
+pub use event::{Event, EventBuilder};
+pub use flow::{Flow, Prediction, Recorded};
+pub use series::{Quantity, Series};

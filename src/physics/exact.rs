@@ -1,0 +1,282 @@
+//! The exact solution of du/dt = a - b u - c u^2 on a stretch of slope.
+//!
+//! A [`Leg`] is a stretch on which a, b and c are constant and u > 0. Where
+//! it is left, when, and the state at any time between are closed forms. With
+//! w = u^2 and b = 0, dw/ds = 2 (a - c w) gives over a length l
+//!
+//! w1 = w0 e + a E,  e = exp(-2 c l),  E = (1 - e)/c,
+//! travel time = q atanh(sqrt(z))/sqrt(z),  q = E/(u1 + u0 e),  z = a c q^2,
+//!
+//! good for either sign of a and c and for c = 0. With b the equation is
+//! Riccati's in time; its speed is closed, its place closed in logarithms.
+
+use super::elementary::{atanhc, coshc, expc, lnc, sinhc, tanhc};
+use crate::scalar::{Kind, Real};
+
+/// The coefficients of du/dt = a - b u - c u^2.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Force<K: Kind> {
+    pub(crate) a: Real<K>,
+    pub(crate) b: Real<K>,
+    pub(crate) c: Real<K>,
+}
+
+/// How a leg ends.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum End<K: Kind> {
+    /// At its far border, with this speed after this time.
+    Leaves { speed: Real<K>, after: Real<K> },
+    /// At rest, after this distance and time.
+    Stops { distance: Real<K>, after: Real<K> },
+    /// Never: the border is not reached in any time.
+    Never,
+}
+
+impl<K: Kind> Force<K> {
+    /// du/dt at speed `u`.
+    #[inline]
+    pub(crate) fn acceleration(&self, u: Real<K>) -> Real<K> {
+        self.a - self.b * u - self.c * u * u
+    }
+
+    /// How a stretch of the given length ends that is entered with speed `u`
+    /// (positive, or 0 with a > 0).
+    #[inline(always)]
+    pub(crate) fn traverse(&self, u: Real<K>, length: Real<K>) -> End<K> {
+        if self.b.is_constantly_zero() {
+            self.traverse_quadratic(u, length)
+        } else {
+            self.traverse_riccati(u, length)
+        }
+    }
+
+    #[inline(always)]
+    fn traverse_quadratic(&self, u: Real<K>, length: Real<K>) -> End<K> {
+        let (a, c) = (self.a, self.c);
+        if length.value() == f64::INFINITY {
+            return self.endless(u);
+        }
+        let x = c * length * 2.0;
+        let spread = expc(x) * length * 2.0;
+        let decay = 1.0 - c * spread;
+        let w = u * u * decay + a * spread;
+        if w.value() <= 0.0 {
+            return self.stop(u);
+        }
+        let speed = w.sqrt();
+        let q = spread / (speed + u * decay);
+        End::Leaves { speed, after: q * atanhc(a * c * q * q) }
+    }
+
+    /// On a slope without end the mass stops or goes on for ever.
+    #[cold]
+    fn endless(&self, u: Real<K>) -> End<K> {
+        let runs_away = self.c < 0.0 && (self.a + self.c.abs() * u * u) >= 0.0;
+        if self.a < 0.0 && !runs_away { self.stop(u) } else { End::Never }
+    }
+
+    /// The stop of a mass that does stop, b = 0.
+    #[inline(never)]
+    fn stop(&self, u: Real<K>) -> End<K> {
+        let braked = u / -self.a;
+        let y = self.c * u * braked;
+        End::Stops {
+            distance: 0.5 * u * braked * lnc(y),
+            after: braked * atanhc(-y),
+        }
+    }
+
+    /// The time after which the speed is `target`, b = 0 or not; not finite
+    /// or negative where it never is.
+    pub(crate) fn time_to_speed(
+        &self,
+        u: Real<K>,
+        target: Real<K>,
+    ) -> Real<K> {
+        let mean = 0.5 * (u + target);
+        let rate = self.a - self.b * mean - self.c * u * target;
+        let t = (target - u) / rate;
+        t * atanhc(self.discriminant() * t * t)
+    }
+
+    /// b^2/4 + a c, the squared rate of approach to the terminal speed.
+    #[inline]
+    fn discriminant(&self) -> Real<K> {
+        self.a * self.c + 0.25 * self.b * self.b
+    }
+
+    /// The speed after time `t` on the leg.
+    #[inline]
+    pub(crate) fn speed_after(&self, u: Real<K>, t: Real<K>) -> Real<K> {
+        let g = tanhc(self.discriminant() * t * t) * t;
+        let half = 0.5 * self.b;
+        ((self.a - half * u) * g + u) / ((self.c * u + half) * g + 1.0)
+    }
+
+    /// The distance covered after time `t` on the leg.
+    pub(crate) fn distance_after(&self, u: Real<K>, t: Real<K>) -> Real<K> {
+        let rate = self.discriminant().value().abs().sqrt();
+        if !self.b.is_constantly_zero() {
+            self.distance_riccati(u, t)
+        } else if rate * t.value() > 20.0 {
+            // y = cosh(r t) + c u sinh(r t)/r overflows; its log does not,
+            // and exp(-2 r t) is below round-off.
+            let r = self.discriminant().sqrt();
+            (r * t + ((1.0 + self.c * u / r) * 0.5).ln()) / self.c
+        } else {
+            let z = self.discriminant() * t * t;
+            let p = (u * sinhc(z) + self.a * t * coshc(z)) * t;
+            p * lnc(self.c * p)
+        }
+    }
+
+    /// The distance with b: ln(y)/c - b t/(2 c), y = cosh(r t) + (c u + b/2)
+    /// sinh(r t)/r. Where c is too small for that difference, the integral of
+    /// the closed-form speed by Gauss's rule, exact to round-off.
+    fn distance_riccati(&self, u: Real<K>, t: Real<K>) -> Real<K> {
+        let (a, b, c) = (self.a, self.b, self.c);
+        if c.is_constantly_zero() {
+            let x = b * t;
+            return (u * expc(x) + a * t * ramp(x)) * t;
+        }
+        if c.value().abs() < 1e-5 {
+            return self.distance_by_quadrature(u, t);
+        }
+        let z = self.discriminant() * t * t;
+        let k = (c * u + 0.5 * b) * t;
+        let ln_y = if z > 400.0 {
+            let r = z.sqrt();
+            r + ((1.0 + k / r) * 0.5).ln()
+        } else {
+            (sinhc(z) * k + coshc(z) * z).ln_1p()
+        };
+        (ln_y - 0.5 * b * t) / c
+    }
+
+    fn distance_by_quadrature(&self, u: Real<K>, t: Real<K>) -> Real<K> {
+        let rate = self.discriminant().value().abs().sqrt();
+        let panels = (rate * t.value()).ceil().clamp(1.0, 1e4);
+        let width = t / panels;
+        let mut sum = Real::new(0.0);
+        for panel in 0..panels as usize {
+            for (node, weight) in GAUSS {
+                for node in [node, -node] {
+                    let at = width * (panel as f64 + 0.5 + 0.5 * node);
+                    sum += self.speed_after(u, at) * weight;
+                }
+            }
+        }
+        sum * width * 0.5
+    }
+
+    #[inline(never)]
+    fn traverse_riccati(&self, u: Real<K>, length: Real<K>) -> End<K> {
+        let stop = self.stop_riccati(u);
+        if let Some(End::Stops { distance, .. }) = stop
+            && distance <= length
+        {
+            return stop.unwrap_or(End::Never);
+        }
+        if length.value() == f64::INFINITY {
+            return End::Never;
+        }
+        let within = match stop {
+            Some(End::Stops { after, .. }) => after.value(),
+            _ => f64::INFINITY,
+        };
+        let Some(t) = self.time_to_place(u, length.value(), within) else {
+            return End::Never;
+        };
+        // One Newton step in full arithmetic carries the derivatives.
+        let t = Real::new(t);
+        let miss = self.distance_after(u, t) - length;
+        let after = t - miss / self.speed_after(u, t).value();
+        End::Leaves { speed: self.speed_after(u, after), after }
+    }
+
+    fn stop_riccati(&self, u: Real<K>) -> Option<End<K>> {
+        if !(self.a < 0.0) {
+            return None;
+        }
+        let after = self.time_to_speed(u, Real::new(0.0));
+        (after.value().is_finite() && after >= 0.0).then(|| End::Stops {
+            distance: self.distance_after(u, after),
+            after,
+        })
+    }
+
+    /// The time to cover `length`, by Newton's method kept in its bracket.
+    fn time_to_place(
+        &self,
+        u: Real<K>,
+        length: f64,
+        within: f64,
+    ) -> Option<f64> {
+        let plain = Force::<crate::scalar::Plain> {
+            a: self.a.value().into(),
+            b: self.b.value().into(),
+            c: self.c.value().into(),
+        };
+        let u = Real::new(u.value());
+        let place = |t: f64| plain.distance_after(u, t.into()).value();
+        let (mut low, mut high) = (0.0, within);
+        if high == f64::INFINITY {
+            high = 1.0;
+            while place(high) < length {
+                low = high;
+                high *= 2.0;
+                if high > 1e9 {
+                    return None;
+                }
+            }
+        }
+        let mut t = 0.5 * (low + high);
+        for _ in 0..100 {
+            let miss = place(t) - length;
+            if miss > 0.0 {
+                high = t
+            } else {
+                low = t
+            }
+            let speed = plain.speed_after(u, t.into()).value();
+            let newton = t - miss / speed;
+            let next = if newton > low && newton < high {
+                newton
+            } else {
+                0.5 * (low + high)
+            };
+            if (next - t).abs() <= 1e-15 * t {
+                return Some(next);
+            }
+            t = next;
+        }
+        Some(t)
+    }
+}
+
+/// (x - 1 + exp(-x))/x^2: the ramp of a mass pulled from rest.
+fn ramp<K: Kind>(x: Real<K>) -> Real<K> {
+    if x.value().abs() > 0.1 {
+        return (1.0 - expc(x)) / x;
+    }
+    let mut term = Real::new(0.5);
+    let mut sum = term;
+    for n in 3..14 {
+        term = term * x / -f64::from(n);
+        sum += term;
+    }
+    sum
+}
+
+/// Nodes and weights of the 16-point Gauss-Legendre rule (one half; the rule
+/// is symmetric), Abramowitz & Stegun table 25.4.
+const GAUSS: [(f64, f64); 8] = [
+    (0.095_012_509_837_637_44, 0.189_450_610_455_068_5),
+    (0.281_603_550_779_258_9, 0.182_603_415_044_923_6),
+    (0.458_016_777_657_227_4, 0.169_156_519_395_002_54),
+    (0.617_876_244_402_643_7, 0.149_595_988_816_576_73),
+    (0.755_404_408_355_003, 0.124_628_971_255_533_87),
+    (0.865_631_202_387_831_7, 0.095_158_511_682_492_78),
+    (0.944_575_023_073_232_6, 0.062_253_523_938_647_89),
+    (0.989_400_934_991_649_9, 0.027_152_459_411_754_095),
+];

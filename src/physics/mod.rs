@@ -1,0 +1,21 @@
+//! The physics: terrain, friction laws, and how a mass slides under them.
+//!
+//! ds/dt = u and du/dt = g sin(theta(s)) - r(s, u), u never below 0: a mass
+//! at rest stays while friction can hold it (Heredia et al. 2020, equation
+//! 1). The track is a chain of pieces of constant slope, and on a piece every
+//! law of the form r = A + B u + C u^2 has an exact solution.
+
+pub mod friction;
+pub mod track;
+
+mod elementary;
+mod exact;
+mod numeric;
+mod walk;
+
+pub use friction::{Friction, Rate, Site, Sum, Varies};
+pub use track::Track;
+pub use walk::{Path, Release, Rest, State, rest, sample};
+
+/// The acceleration of gravity \[m/s2\].
+pub const GRAVITY: f64 = 9.81;

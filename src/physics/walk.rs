@@ -1,0 +1,410 @@
+//! Sliding along the track, leg by leg.
+//!
+//! A [`Walker`] stands on one leg of the motion at a time, knows when it ends
+//! and the state at any time on it. The exact walker here serves every law of
+//! the exact family, the one in `numeric` the rest; sampling a flow at given
+//! times and following it to rest are written once, over both.
+
+use super::exact::{End, Force};
+use super::friction::{Friction, Rate, Site, Varies};
+use super::numeric::NumericWalker;
+use super::track::{Piece, Track};
+use crate::error::Stop;
+use crate::scalar::{Kind, Real};
+
+/// How the mass starts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Release<K: Kind> {
+    /// Distance along the slope \[m\].
+    pub distance: Real<K>,
+    /// Speed at t = 0 \[m/s\].
+    pub speed: Real<K>,
+}
+
+/// The state of the mass at one time.
+#[derive(Debug, Clone, Copy)]
+pub struct State<K: Kind> {
+    /// Speed \[m/s\].
+    pub speed: Real<K>,
+    /// Distance along the slope from the track's first point \[m\].
+    pub distance: Real<K>,
+    /// du/dt \[m/s2\].
+    pub acceleration: Real<K>,
+}
+
+/// Where and when the mass comes to rest.
+#[derive(Debug, Clone, Copy)]
+pub struct Rest<K: Kind> {
+    /// Time \[s\].
+    pub time: Real<K>,
+    /// Distance along the slope from the track's first point \[m\].
+    pub distance: Real<K>,
+}
+
+/// One leg of the motion after the other.
+pub(crate) trait Walker<K: Kind> {
+    /// The time at which the current leg ends \[s\]; infinite at rest.
+    fn ends(&self) -> f64;
+    /// Goes on to the next leg.
+    fn advance(&mut self) -> Result<(), Stop>;
+    /// The speed at a time on the current leg.
+    fn speed_at(&self, time: f64) -> Real<K>;
+    /// The whole state there.
+    fn state_at(&self, time: f64) -> State<K>;
+    /// Where and when the mass came to rest, once it has.
+    fn at_rest(&self) -> Option<Rest<K>>;
+}
+
+/// Legs before a flow is given up as endless: far above any real track, it
+/// only keeps a pathological law from running for ever.
+const MAX_LEGS: usize = 10_000_000;
+
+/// Solves the motion and hands the state at each of the increasing `times`
+/// \[s\] to `visit`. With `speed_only`, distance and acceleration are left at
+/// 0 and cost nothing.
+///
+/// # Errors
+/// [`Stop::Reject`] where the law has no flow with these values.
+#[inline]
+pub fn sample<K: Kind, L: Friction<K>>(
+    path: &Path<'_>,
+    law: &L,
+    release: Release<K>,
+    times: &[f64],
+    speed_only: bool,
+    visit: impl FnMut(State<K>),
+) -> Result<(), Stop> {
+    if law.varies() == Varies::WithSpeed {
+        let walker = NumericWalker::new(path, law, release)?;
+        visit_times(walker, times, speed_only, visit)
+    } else {
+        let walker = ExactWalker::new(path, law, release)?;
+        visit_times(walker, times, speed_only, visit)
+    }
+}
+
+/// Follows the motion until the mass rests; `None` if it never does.
+///
+/// # Errors
+/// [`Stop::Reject`] where the law has no flow with these values.
+pub fn rest<K: Kind, L: Friction<K>>(
+    path: &Path<'_>,
+    law: &L,
+    release: Release<K>,
+) -> Result<Option<Rest<K>>, Stop> {
+    if law.varies() == Varies::WithSpeed {
+        follow(NumericWalker::new(path, law, release)?)
+    } else {
+        follow(ExactWalker::new(path, law, release)?)
+    }
+}
+
+/// The ground a flow runs on: the track and the flow depth \[m\].
+#[derive(Debug, Clone, Copy)]
+pub struct Path<'a> {
+    /// The terrain.
+    pub track: &'a Track,
+    /// The mean flow depth \[m\].
+    pub depth: f64,
+}
+
+#[inline(always)]
+fn visit_times<K: Kind>(
+    mut walker: impl Walker<K>,
+    times: &[f64],
+    speed_only: bool,
+    mut visit: impl FnMut(State<K>),
+) -> Result<(), Stop> {
+    for &time in times {
+        while walker.ends() <= time {
+            walker.advance()?;
+        }
+        visit(if speed_only {
+            let speed = walker.speed_at(time);
+            let zero = Real::new(0.0);
+            State { speed, distance: zero, acceleration: zero }
+        } else {
+            walker.state_at(time)
+        });
+    }
+    Ok(())
+}
+
+fn follow<K: Kind>(
+    mut walker: impl Walker<K>,
+) -> Result<Option<Rest<K>>, Stop> {
+    for _ in 0..MAX_LEGS {
+        if let Some(rest) = walker.at_rest() {
+            return Ok(Some(rest));
+        }
+        if walker.ends() == f64::INFINITY {
+            return Ok(None);
+        }
+        walker.advance()?;
+    }
+    Ok(None)
+}
+
+/// The site of a piece, as laws see it.
+pub(crate) fn site(piece: &Piece, depth: f64) -> Site {
+    let half = if piece.length.is_finite() { 0.5 * piece.length } else { 0.0 };
+    Site {
+        distance: piece.start + half,
+        pull: piece.pull,
+        load: piece.load,
+        curvature: piece.curvature,
+        depth,
+    }
+}
+
+/// The piece at the start and how far into it the mass stands.
+pub(crate) fn first_piece<K: Kind>(
+    path: &Path<'_>,
+    release: &Release<K>,
+) -> Result<(usize, Real<K>), Stop> {
+    if !release.distance.value().is_finite()
+        || !release.speed.value().is_finite()
+        || release.distance < 0.0
+        || release.speed < 0.0
+    {
+        return Err(Stop::Reject(
+            "the mass starts off the track or backwards",
+        ));
+    }
+    let index = path.track.piece_at(release.distance.value());
+    Ok((index, release.distance - path.track.pieces()[index].start))
+}
+
+/// The walker of the exact family.
+struct ExactWalker<'a, K: Kind, L> {
+    pieces: &'a [Piece],
+    depth: f64,
+    law: &'a L,
+    /// The law's rates, if they are the same everywhere.
+    uniform: Option<Rate<K>>,
+    index: usize,
+    /// How far into its piece the leg begins [m].
+    within: Real<K>,
+    /// Time [s] and speed [m/s] at which it begins.
+    begins: Real<K>,
+    speed: Real<K>,
+    /// How long it is [m].
+    length: Real<K>,
+    /// Whether the bed carries no load: a bend has lifted the mass off.
+    lifted: bool,
+    /// Whether the leg ends where that changes, inside its piece.
+    crosses: bool,
+    force: Force<K>,
+    end: End<K>,
+    ends: f64,
+    resting: bool,
+}
+
+impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
+    #[inline]
+    fn new(
+        path: &Path<'a>,
+        law: &'a L,
+        release: Release<K>,
+    ) -> Result<Self, Stop> {
+        let (index, within) = first_piece(path, &release)?;
+        let pieces = path.track.pieces();
+        let zero = Real::new(0.0);
+        let uniform = (law.varies() == Varies::Nowhere)
+            .then(|| law.rate(&site(&pieces[index], path.depth), zero));
+        let mut walker = Self {
+            pieces,
+            depth: path.depth,
+            law,
+            uniform,
+            index,
+            within,
+            begins: zero,
+            speed: release.speed,
+            length: zero,
+            lifted: false,
+            crosses: false,
+            force: Force { a: zero, b: zero, c: zero },
+            end: End::Never,
+            ends: f64::INFINITY,
+            resting: false,
+        };
+        walker.enter_piece()?;
+        Ok(walker)
+    }
+
+    /// Steps onto a piece: the bed carries the mass unless it is too fast.
+    #[inline(always)]
+    fn enter_piece(&mut self) -> Result<(), Stop> {
+        self.lifted = false;
+        let piece = &self.pieces[self.index];
+        let rate = match &self.uniform {
+            Some(rate) => *rate,
+            None => self.law.rate(&site(piece, self.depth), Real::new(0.0)),
+        };
+        if rate.pressed.is_constantly_zero() {
+            return self.begin(piece, &rate);
+        }
+        let lift_off = lift_off(piece, &rate);
+        self.lifted = lift_off.is_some_and(|speed| self.speed > speed);
+        self.begin_bent(piece, &rate, lift_off)
+    }
+
+    /// Begins a leg where the load does not depend on the speed.
+    #[inline(always)]
+    fn begin(&mut self, piece: &Piece, rate: &Rate<K>) -> Result<(), Stop> {
+        self.force = Force {
+            a: piece.pull - rate.mu * piece.load - rate.constant,
+            b: rate.linear,
+            c: rate.quadratic + rate.growth,
+        };
+        self.set_off(piece)
+    }
+
+    /// Begins a leg in a bend, and ends it where the bed begins or ceases to
+    /// carry the mass.
+    #[inline(never)]
+    fn begin_bent(
+        &mut self,
+        piece: &Piece,
+        rate: &Rate<K>,
+        lift_off: Option<Real<K>>,
+    ) -> Result<(), Stop> {
+        let mu = if self.lifted { Real::new(0.0) } else { rate.mu };
+        self.force = Force {
+            a: piece.pull - mu * piece.load - rate.constant,
+            b: rate.linear,
+            c: rate.quadratic
+                + rate.growth
+                + mu * rate.pressed * piece.curvature,
+        };
+        self.set_off(piece)?;
+        let Some(threshold) = lift_off else { return Ok(()) };
+        let arrives = match self.end {
+            End::Leaves { speed, .. } => speed,
+            _ => Real::new(0.0),
+        };
+        let crosses = if self.lifted {
+            arrives < threshold
+        } else {
+            arrives > threshold
+        };
+        let after = self.force.time_to_speed(self.speed, threshold);
+        if !self.resting && crosses && after.value() >= 0.0 {
+            self.length = self.force.distance_after(self.speed, after);
+            self.end = End::Leaves { speed: threshold, after };
+            self.crosses = true;
+            self.ends = (self.begins + after).value();
+        }
+        Ok(())
+    }
+
+    /// Finds the end of the leg whose force has just been set.
+    #[inline(always)]
+    fn set_off(&mut self, piece: &Piece) -> Result<(), Stop> {
+        self.length = Real::new(piece.length) - self.within;
+        if self.speed.value() <= 0.0 && self.force.a.value() <= 0.0 {
+            self.come_to_rest();
+            return Ok(());
+        }
+        self.end = self.force.traverse(self.speed, self.length);
+        let after = match self.end {
+            End::Leaves { after, .. } | End::Stops { after, .. } => after,
+            End::Never => Real::new(f64::INFINITY),
+        };
+        self.ends = self.begins.value() + after.value();
+        if self.ends.is_nan() {
+            return Err(Stop::Reject("the motion is not a finite number"));
+        }
+        Ok(())
+    }
+
+    #[cold]
+    fn come_to_rest(&mut self) {
+        let zero = Real::new(0.0);
+        self.speed = zero;
+        self.force = Force { a: zero, b: zero, c: zero };
+        self.end = End::Never;
+        self.ends = f64::INFINITY;
+        self.resting = true;
+    }
+
+    fn place(&self) -> Real<K> {
+        self.within + self.pieces[self.index].start
+    }
+}
+
+/// The speed at which a bend lifts the mass off the bed, where one does.
+fn lift_off<K: Kind>(piece: &Piece, rate: &Rate<K>) -> Option<Real<K>> {
+    let lift = -(rate.pressed * piece.curvature);
+    (lift > 0.0 && piece.load > 0.0).then(|| (piece.load / lift).sqrt())
+}
+
+impl<K: Kind, L: Friction<K>> Walker<K> for ExactWalker<'_, K, L> {
+    #[inline(always)]
+    fn ends(&self) -> f64 {
+        self.ends
+    }
+
+    #[inline(always)]
+    fn advance(&mut self) -> Result<(), Stop> {
+        match self.end {
+            End::Leaves { speed, after } => {
+                self.begins += after;
+                self.speed = speed;
+                if self.crosses {
+                    return self.cross();
+                }
+                self.within = Real::new(0.0);
+                self.index += 1;
+                self.enter_piece()
+            }
+            End::Stops { distance, after } => {
+                self.begins += after;
+                self.within += distance;
+                self.come_to_rest();
+                Ok(())
+            }
+            End::Never => Ok(()),
+        }
+    }
+
+    #[inline(always)]
+    fn speed_at(&self, time: f64) -> Real<K> {
+        self.force.speed_after(self.speed, time - self.begins)
+    }
+
+    #[inline]
+    fn state_at(&self, time: f64) -> State<K> {
+        let after = time - self.begins;
+        let speed = self.force.speed_after(self.speed, after);
+        let covered = self.force.distance_after(self.speed, after);
+        State {
+            speed,
+            distance: self.place() + covered,
+            acceleration: self.force.acceleration(speed),
+        }
+    }
+
+    fn at_rest(&self) -> Option<Rest<K>> {
+        self.resting
+            .then(|| Rest { time: self.begins, distance: self.place() })
+    }
+}
+
+impl<K: Kind, L: Friction<K>> ExactWalker<'_, K, L> {
+    /// Goes on within a piece, the load now on or off.
+    #[cold]
+    fn cross(&mut self) -> Result<(), Stop> {
+        self.within += self.length;
+        self.crosses = false;
+        self.lifted = !self.lifted;
+        let piece = &self.pieces[self.index];
+        let rate = match &self.uniform {
+            Some(rate) => *rate,
+            None => self.law.rate(&site(piece, self.depth), Real::new(0.0)),
+        };
+        // Along one piece the speed changes one way only: no second crossing.
+        self.begin_bent(piece, &rate, None)
+    }
+}
