@@ -12,6 +12,7 @@ pub mod physics;
 pub mod prior;
 pub mod seed;
 
+pub use couloir_macros::model;
 pub use declared::Declared;
 pub use error::{Error, Outcome, Result, Stop};
 pub use model::{Label, Model, Number, Program, Run};

@@ -4,13 +4,13 @@
 //! statement, into every pair of braces; whatever is no `~` line is passed on
 //! with its own spans.
 
-use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Spacing, Span, TokenStream, TokenTree};
 use syn::parse::{ParseStream, Parser};
 use syn::{BinOp, Expr};
 
 use crate::distribution;
 use crate::errors::Errors;
-use crate::tokens::{braces, contains, find, is_mark, is_word, stream};
+use crate::tokens::{braces, contains, find, is_mark, is_word, split, stream};
 use crate::tree::{Distribution, Observation, Piece, Sampling};
 
 /// The pieces of what stands between two braces.
@@ -88,7 +88,7 @@ impl Walk<'_> {
                     law,
                 }))
             }
-            _ => Piece::Broken,
+            (_, law) => Piece::Broken(law.map(Box::new)),
         });
     }
 
@@ -186,4 +186,32 @@ fn last_span(tree: &TokenTree) -> Span {
         }
         tree => tree.span(),
     }
+}
+
+/// Every `.. = right` that is a statement, with what stands on its right.
+pub(crate) fn assignments(
+    tokens: TokenStream,
+) -> Vec<(TokenTree, Vec<TokenTree>)> {
+    let trees: Vec<_> = tokens.into_iter().collect();
+    let mut found = Vec::new();
+    for statement in split(&trees, ';') {
+        let inner = statement.iter().filter_map(braces);
+        found.extend(inner.flat_map(|group| assignments(group.stream())));
+        let start = start(statement, statement.len());
+        let statement = &statement[start..];
+        let is_let = statement.first().is_some_and(|t| is_word(t, "let"));
+        if let Some(i) = (0..statement.len()).find(|&i| assigns(statement, i))
+            && !is_let
+        {
+            found.push((statement[i].clone(), statement[i + 1..].to_vec()));
+        }
+    }
+    found
+}
+
+/// Whether the i-th token is a `=` by itself.
+fn assigns(trees: &[TokenTree], i: usize) -> bool {
+    let joint = |tree: &TokenTree| matches!(tree, TokenTree::Punct(p) if p.spacing() == Spacing::Joint);
+    let alone = i == 0 || !joint(&trees[i - 1]);
+    is_mark(&trees[i], '=') && !joint(&trees[i]) && alone
 }

@@ -2,13 +2,14 @@
 
 use std::collections::HashSet;
 
-use proc_macro2::Ident;
+use proc_macro2::{Ident, TokenTree};
 use syn::{Expr, Fields, ItemStruct};
 
+use crate::body::assignments;
 use crate::distribution::{BuiltIn, check_number, is_built_in};
 use crate::errors::Errors;
-use crate::tokens::{shown, uses};
-use crate::tree::{Body, Count, Declaration, Line, Observation};
+use crate::tokens::{shown, split, stream, uses};
+use crate::tree::{Body, Count, Declaration, Line};
 use crate::tree::{Right, Sampling, Source, Term, Value};
 
 /// Reports everything that is wrong with `source`.
@@ -20,17 +21,28 @@ pub(crate) fn source(source: &Source, errors: &mut Errors) {
     names(source, errors);
     order(source, errors);
     for line in &source.lines {
-        if let Line::Declaration(declaration) = line {
-            right(declaration, errors);
+        match line {
+            Line::Declaration(declaration) => {
+                length(declaration, errors);
+                right(&declaration.right, errors);
+            }
+            Line::Broken(broken) => {
+                broken.parts.iter().for_each(|part| right(part, errors));
+            }
+            Line::Let(_) => {}
         }
+    }
+    used(source, errors);
+    for body in &source.bodies {
+        for (data, law) in body.lines() {
+            if let Some(data) = data {
+                recorded(source, data, errors);
+            }
+            sampled(source, law, errors);
+        }
+        assigned(source, body, errors);
     }
     bodies(source, errors);
-    for body in &source.bodies {
-        used(source, body, errors);
-        for observation in body.observations() {
-            observed(source, observation, errors);
-        }
-    }
 }
 
 fn structure(item: &ItemStruct, errors: &mut Errors) {
@@ -52,7 +64,7 @@ fn structure(item: &ItemStruct, errors: &mut Errors) {
 }
 
 fn missing_struct(source: &Source, errors: &mut Errors) {
-    if !errors.is_empty() && source.lines.is_empty() {
+    if source.broken_structure {
         return;
     }
     let words = "the struct is missing: a model starts with its data, as in \
@@ -133,7 +145,7 @@ fn order(source: &Source, errors: &mut Errors) {
 fn mentioned(line: &Line) -> Vec<Ident> {
     match line {
         Line::Let(local) => uses(&local.value),
-        Line::Broken { tokens, .. } => uses(tokens),
+        Line::Broken(broken) => uses(&broken.tokens),
         Line::Declaration(declaration) => mentioned_by(declaration),
     }
 }
@@ -172,9 +184,13 @@ fn mentioned_in(value: &Value) -> Vec<Ident> {
 }
 
 /// Declarations that nothing uses.
-fn used(source: &Source, body: &Body, errors: &mut Errors) {
+fn used(source: &Source, errors: &mut Errors) {
+    if source.bodies.is_empty() {
+        return;
+    }
+    let bodies = source.bodies.iter().flat_map(|body| uses(&body.tokens));
     let lines = source.lines.iter().flat_map(mentioned);
-    let names: HashSet<_> = lines.chain(uses(&body.tokens)).collect();
+    let names: HashSet<_> = lines.chain(bodies).collect();
     for name in source.lines.iter().filter_map(Line::declared) {
         if !names.contains(name) {
             let words = format!(
@@ -186,23 +202,27 @@ fn used(source: &Source, body: &Body, errors: &mut Errors) {
     }
 }
 
-fn right(declaration: &Declaration, errors: &mut Errors) {
-    if let Right::Distribution(distribution) = &declaration.right {
-        distribution.check(errors);
-    }
+/// Blocks are indexed by name.
+fn length(declaration: &Declaration, errors: &mut Errors) {
     if let (Count::Vector(length), Right::Blocks(_)) =
         (&declaration.count, &declaration.right)
     {
-        let length_text = shown(length);
         let words = format!(
             "a block for each needs a name for the index: write `{}[i in \
-             0..{length_text}]`",
-            declaration.name
+             0..{}]`",
+            declaration.name,
+            shown(length)
         );
         errors.at(length, words);
     }
-    for block in declaration.terms() {
-        term(block, errors);
+}
+
+fn right(right: &Right, errors: &mut Errors) {
+    match right {
+        Right::Distribution(distribution) => distribution.check(errors),
+        Right::Blocks(terms) => {
+            terms.iter().for_each(|block| term(block, errors));
+        }
     }
 }
 
@@ -250,6 +270,10 @@ fn value(name: &Ident, value: &Value, errors: &mut Errors) {
 /// A model has one likelihood, with a `~` line at least.
 fn bodies(source: &Source, errors: &mut Errors) {
     let Some((first, others)) = source.bodies.split_first() else {
+        let mut names = source.lines.iter().filter_map(Line::declared);
+        if names.any(|name| name == "likelihood") {
+            return;
+        }
         let words = "the likelihood is missing: end the model with \
                      `likelihood { data ~ prediction + noise; }`";
         let last = source.lines.iter().rev().find_map(Line::declared);
@@ -264,22 +288,48 @@ fn bodies(source: &Source, errors: &mut Errors) {
                      it add up";
         errors.at(&other.keyword, words);
     }
-    if !first.has_lines() {
+    if !first.has_lines() && meant(source, first).is_empty() {
         let words = "this likelihood compares nothing with a recording: \
                      write a line `data ~ prediction + noise;`";
         errors.at(&first.keyword, words);
     }
 }
 
-fn observed(source: &Source, line: &Observation, errors: &mut Errors) {
-    if let Some(name) = declared(source, &line.data) {
+/// A `=` where a `~` was meant.
+fn assigned(source: &Source, body: &Body, errors: &mut Errors) {
+    for mark in meant(source, body) {
+        errors.at(mark, "data are compared with `~`: write `~` for this `=`");
+    }
+}
+
+/// The `=` behind which a noise is added or a distribution stands.
+fn meant(source: &Source, body: &Body) -> Vec<TokenTree> {
+    let is_law = |right: &[TokenTree]| {
+        let last = split(right, '+').last().map(|last| stream(last));
+        match last.map(syn::parse2::<Expr>) {
+            Some(Ok(Expr::Call(call))) => is_built_in(&call),
+            Some(Ok(one)) => declared(source, &one)
+                .is_some_and(|name| has_blocks(source, name)),
+            _ => false,
+        }
+    };
+    let all = assignments(body.tokens.clone()).into_iter();
+    all.filter(|(_, right)| is_law(right)).map(|(mark, _)| mark).collect()
+}
+
+/// Left of `~` stand data.
+fn recorded(source: &Source, data: &Expr, errors: &mut Errors) {
+    if let Some(name) = declared(source, data) {
         let words = format!(
             "`{name}` is declared above, it was not recorded: left of `~` \
              in the likelihood stand data"
         );
-        errors.at(&line.data, words);
+        errors.at(data, words);
     }
-    match &line.law {
+}
+
+fn sampled(source: &Source, law: &Sampling, errors: &mut Errors) {
+    match law {
         Sampling::Distribution(distribution) => distribution.check(errors),
         Sampling::Noise { prediction, noise } => {
             summands(source, prediction, noise, errors);

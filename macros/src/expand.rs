@@ -37,7 +37,7 @@ pub(crate) fn source(
         #item
         #constructor
         impl #generics ::couloir::Program for #name #arguments #conditions {
-            fn run<#kind: ::couloir::scalar::Kind>(
+            fn run<#kind: ::couloir::Number>(
                 &self,
                 #run: &mut ::couloir::Run<'_, #kind>,
             ) -> ::couloir::Outcome {
@@ -158,7 +158,7 @@ impl Writer<'_> {
         match line {
             Line::Let(local) => local.statement.clone(),
             Line::Declaration(declaration) => self.declaration(declaration),
-            Line::Broken { .. } => TokenStream::new(),
+            Line::Broken(_) => TokenStream::new(),
         }
     }
 
@@ -295,7 +295,7 @@ impl Writer<'_> {
                 let (run, prior) = (at(span, "run"), self.distribution(prior));
                 let label = label();
                 let at = Span::mixed_site().located_at(span);
-                quote_spanned!(at=> #run.list(#label, #length, #prior)?)
+                quote_spanned!(at=> #run.vector(#label, #length, #prior)?)
             }
             Value::Known(value) => self.known(value),
             Value::Broken(_) => TokenStream::new(),
@@ -371,7 +371,7 @@ impl Writer<'_> {
                     braced(self.pieces(inside), *span)
                 }
                 Piece::Observation(line) => self.observation(line),
-                Piece::Broken => TokenStream::new(),
+                Piece::Broken(_) => TokenStream::new(),
             })
             .collect()
     }

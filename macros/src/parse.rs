@@ -3,33 +3,39 @@
 //! Every line is read on its own, so that an error in one leaves the others
 //! understood.
 
-use proc_macro2::{Group, Ident, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
+use quote::ToTokens;
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Parser};
 use syn::visit::Visit;
-use syn::{Expr, ItemStruct, Path, Stmt, Token, token};
+use syn::{Expr, ExprArray, ItemStruct, Path, Stmt, Token, token};
 
 use crate::body;
 use crate::distribution;
 use crate::errors::Errors;
 use crate::split::{self, Part};
-use crate::tokens::{attributes, braces, find, is_mark, is_word};
+use crate::tokens::{attributes, braces, find, group, is_mark, is_word};
 use crate::tokens::{shown, split, stream};
-use crate::tree::{Body, Count, Declaration, Distribution, Field, Let, Line};
-use crate::tree::{Right, Source, Term, Value};
+use crate::tree::{Body, Broken, Count, Declaration, Distribution, Field};
+use crate::tree::{Let, Line, Right, Source, Term, Value};
 
 /// Reads a whole model; what cannot be understood is reported.
 pub(crate) fn source(input: TokenStream, errors: &mut Errors) -> Source {
-    let mut source =
-        Source { structure: None, lines: Vec::new(), bodies: Vec::new() };
+    let mut source = Source {
+        structure: None,
+        broken_structure: false,
+        lines: Vec::new(),
+        bodies: Vec::new(),
+    };
     for part in split::parts(input, errors) {
         match part {
             Part::Struct(tokens) => structure(tokens, &mut source, errors),
             Part::Line(trees) => {
-                if let Some(body) = source.bodies.last() {
-                    late(&trees, body, errors);
-                }
-                source.lines.extend(line(&trees, errors));
+                let line = match source.bodies.last() {
+                    Some(body) => late(&trees, body, errors),
+                    None => line(&trees, errors),
+                };
+                source.lines.extend(line);
             }
             Part::Likelihood(keyword, group) => {
                 let body = likelihood(keyword, &group, errors);
@@ -42,7 +48,10 @@ pub(crate) fn source(input: TokenStream, errors: &mut Errors) -> Source {
 
 fn structure(tokens: TokenStream, source: &mut Source, errors: &mut Errors) {
     let read = errors.keep(syn::parse2::<ItemStruct>(tokens));
-    let Some(item) = read else { return };
+    let Some(item) = read else {
+        source.broken_structure = true;
+        return;
+    };
     if source.structure.is_some() {
         let words = "a second struct: a model has one, write this one \
                      outside `model!`";
@@ -51,15 +60,20 @@ fn structure(tokens: TokenStream, source: &mut Source, errors: &mut Errors) {
     source.structure = Some(item);
 }
 
-fn late(trees: &[TokenTree], body: &Body, errors: &mut Errors) {
+/// A line below the likelihood.
+fn late(
+    trees: &[TokenTree],
+    body: &Body,
+    errors: &mut Errors,
+) -> Option<Line> {
+    let (_, rest) = attributes(trees);
     let words = format!(
         "this stands below `{}`: move the line above it",
         body.keyword
     );
-    let (_, rest) = attributes(trees);
-    if let Some(first) = rest.first() {
-        errors.at(first, words);
-    }
+    errors.at(rest.first()?, words);
+    let tokens = stream(rest);
+    Some(Line::Broken(Broken { name: None, tokens, parts: Vec::new() }))
 }
 
 fn likelihood(keyword: Ident, group: &Group, errors: &mut Errors) -> Body {
@@ -80,26 +94,29 @@ fn line(trees: &[TokenTree], errors: &mut Errors) -> Option<Line> {
     }
     let Some(tilde) = find(rest, '~') else {
         no_tilde(rest, errors);
-        return Some(broken(rest, rest.len()));
+        return Some(broken(rest, Vec::new()));
     };
     let head = errors.keep(head.parse2(stream(&rest[..tilde])));
     let right = right(&rest[tilde], &rest[tilde + 1..], errors);
     Some(match (head, right) {
-        (Some((name, count)), Some(right)) => {
+        (Some((name, count)), Ok(right)) => {
             Line::Declaration(Box::new(Declaration { name, count, right }))
         }
-        _ => broken(rest, tilde),
+        (None, Ok(right)) => broken(rest, vec![right]),
+        (_, Err(parts)) => broken(rest, parts),
     })
 }
 
 /// A line that was not understood; its name is kept if it has one.
-fn broken(trees: &[TokenTree], tilde: usize) -> Line {
-    let name = match trees {
-        [TokenTree::Ident(name), ..] => Some(name.clone()),
-        _ => None,
-    };
-    let from = if name.is_some() { 1 } else { tilde.min(trees.len()) };
-    Line::Broken { name, tokens: stream(&trees[from..]) }
+fn broken(trees: &[TokenTree], parts: Vec<Right>) -> Line {
+    let named = matches!(trees, [TokenTree::Ident(_), mark, ..]
+        if braces(mark).is_none() && group(mark, Delimiter::Parenthesis).is_none());
+    let name = trees
+        .first()
+        .filter(|_| named)
+        .and_then(|name| syn::parse2(stream(std::slice::from_ref(name))).ok());
+    let from = usize::from(name.is_some());
+    Line::Broken(Broken { name, tokens: stream(&trees[from..]), parts })
 }
 
 /// Declarations may carry comments for the reader, nothing else.
@@ -115,15 +132,16 @@ fn check_attribute(attribute: &[TokenTree], errors: &mut Errors) {
 /// `let pattern = value;`
 fn local(trees: &[TokenTree], errors: &mut Errors) -> Line {
     let mut statement = stream(trees);
-    statement.extend(quote::quote!(;));
+    let end = trees.last().map_or_else(Span::call_site, TokenTree::span);
+    statement.extend(quote::quote_spanned!(end=> ;));
     let local = match errors.keep(syn::parse2(statement.clone())) {
         Some(Stmt::Local(local)) => local,
-        _ => return broken(trees, 0),
+        _ => return broken(trees, Vec::new()),
     };
     let mut names = Names(Vec::new());
     names.visit_pat(&local.pat);
     let value = match &local.init {
-        Some(init) => quote::ToTokens::to_token_stream(&init.expr),
+        Some(init) => init.expr.to_token_stream(),
         None => TokenStream::new(),
     };
     Line::Let(Let { names: names.0, value, statement })
@@ -203,38 +221,41 @@ fn head(input: ParseStream<'_>) -> syn::Result<(Ident, Count)> {
     }
 }
 
-/// A distribution, or blocks with `+` between.
+/// A distribution, or blocks with `+` between; `Err` has the parts that were
+/// understood of something else.
 fn right(
     tilde: &TokenTree,
     trees: &[TokenTree],
     errors: &mut Errors,
-) -> Option<Right> {
+) -> Result<Right, Vec<Right>> {
     let terms = split(trees, '+');
-    let mut blocks = Vec::new();
-    let mut distributions = Vec::new();
-    for term in &terms {
-        match side(tilde, term, errors)? {
-            Side::Block(block) => blocks.push(block),
-            Side::Distribution(distribution) => {
-                distributions.push(distribution);
-            }
-        }
+    let read = terms.iter().map(|term| side(tilde, term, errors));
+    let read: Vec<_> = read.collect();
+    let complete = read.iter().all(Option::is_some);
+    let mut parts: Vec<_> = read.into_iter().flatten().collect();
+    if terms.len() == 1 {
+        return parts.pop().ok_or(parts);
     }
-    match distributions.pop() {
-        None => Some(Right::Blocks(blocks)),
-        Some(only) if terms.len() == 1 => Some(Right::Distribution(only)),
-        Some(one) => {
+    for part in &parts {
+        if let Right::Distribution(one) = part {
             let words = "`+` adds blocks, such as `Coulomb { .. } + \
                          Turbulent { .. }`: a distribution stands alone";
-            errors.at(one.path, words);
-            None
+            errors.at(&one.path, words);
         }
+    }
+    let is_blocks = |part: &Right| matches!(part, Right::Blocks(_));
+    if complete && parts.iter().all(is_blocks) {
+        Ok(Right::Blocks(parts.into_iter().flat_map(blocks).collect()))
+    } else {
+        Err(parts)
     }
 }
 
-enum Side {
-    Block(Term),
-    Distribution(Distribution),
+fn blocks(right: Right) -> Vec<Term> {
+    match right {
+        Right::Blocks(terms) => terms,
+        Right::Distribution(_) => Vec::new(),
+    }
 }
 
 /// One term of a right side.
@@ -242,7 +263,7 @@ fn side(
     tilde: &TokenTree,
     trees: &[TokenTree],
     errors: &mut Errors,
-) -> Option<Side> {
+) -> Option<Right> {
     let Some((last, before)) = trees.split_last() else {
         let words = "a block or a distribution is missing here, such as \
                      `Coulomb { .. }` or `Normal(0.0, 1.0)`";
@@ -252,11 +273,11 @@ fn side(
     if let Some(inside) = braces(last)
         && let Ok(path) = Path::parse_mod_style.parse2(stream(before))
     {
-        return Some(Side::Block(block(path, inside, errors)));
+        return Some(Right::Blocks(vec![block(path, inside, errors)]));
     }
     match syn::parse2::<Expr>(stream(trees)) {
         Ok(Expr::Call(call)) if distribution::is_meant(&call) => {
-            Distribution::from_call(&call).map(Side::Distribution)
+            Distribution::from_call(&call).map(Right::Distribution)
         }
         Ok(other) => {
             errors.at(&other, neither(&other));
@@ -354,12 +375,7 @@ fn prior(
         return Value::Broken(stream(given));
     };
     let read = match &value {
-        Expr::Array(list) => list
-            .elems
-            .iter()
-            .map(|one| one_prior(name, one, &value, errors))
-            .collect::<Option<_>>()
-            .map(Value::Priors),
+        Expr::Array(list) => list_of_priors(name, list, errors),
         Expr::Repeat(list) => one_prior(name, &list.expr, &value, errors)
             .map(|one| Value::Repeated(one, (*list.len).clone())),
         one => one_prior(name, one, &value, errors).map(Value::Prior),
@@ -367,30 +383,70 @@ fn prior(
     read.unwrap_or_else(|| Value::Broken(stream(given)))
 }
 
+/// `[prior, prior]`; each value that has none is reported.
+fn list_of_priors(
+    name: &Ident,
+    list: &ExprArray,
+    errors: &mut Errors,
+) -> Option<Value> {
+    let mut priors = Vec::new();
+    let mut others = Vec::new();
+    for one in &list.elems {
+        match as_prior(one) {
+            Some(prior) => priors.push(prior),
+            None => others.push(one),
+        }
+    }
+    if priors.is_empty() && !others.is_empty() {
+        errors.at(list, known_takes_equals(name, list));
+        return None;
+    }
+    for one in others {
+        let words = format!(
+            "every value of a list behind `:` has a prior: give this one its \
+             own, or write all of them as values, `{name} = [..]`"
+        );
+        errors.at(one, words);
+    }
+    Some(Value::Priors(priors))
+}
+
+fn as_prior(given: &Expr) -> Option<Distribution> {
+    match given {
+        Expr::Call(call) if distribution::is_meant(call) => {
+            Distribution::from_call(call)
+        }
+        _ => None,
+    }
+}
+
+fn known_takes_equals(name: &Ident, given: impl ToTokens) -> String {
+    format!(
+        "behind `:` stands a prior; a known or shared value takes `=`: write \
+         `{name} = {}`",
+        shown(given)
+    )
+}
+
+/// One prior; `whole` is what stands behind the `:`.
 fn one_prior(
     name: &Ident,
     given: &Expr,
     whole: &Expr,
     errors: &mut Errors,
 ) -> Option<Distribution> {
-    if let Expr::Call(call) = given
-        && distribution::is_meant(call)
-    {
-        return Distribution::from_call(call);
+    let prior = as_prior(given);
+    if prior.is_none() {
+        let words = match given {
+            Expr::Binary(_) => format!(
+                "behind `:` stands one prior, such as `{name}: Gamma(9.0, \
+                 0.03)`; combine declared parameters with `{name} = ..`"
+            ),
+            _ => known_takes_equals(name, whole),
+        };
+        errors.at(given, words);
     }
-    let words = match given {
-        Expr::Binary(_) => format!(
-            "behind `:` stands one prior, such as `{name}: Gamma(9.0, \
-             0.03)`; combine declared parameters with `{name} = ..`"
-        ),
-        _ => format!(
-            "behind `:` stands a prior; a known or shared value takes `=`: \
-             write `{name} = {}`",
-            shown(whole)
-        ),
-    };
-    errors.at(given, words);
-    None
+    prior
 }
 
 fn known(

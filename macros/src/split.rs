@@ -1,6 +1,6 @@
 //! Cuts the tokens of a model into its struct, its lines and its likelihood.
 
-use proc_macro2::{Delimiter, Group, Ident, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 
 use crate::distribution::distance;
 use crate::errors::Errors;
@@ -125,11 +125,10 @@ fn line_or_struct(line: Vec<TokenTree>) -> Part {
     let (_, rest) = attributes(&line);
     let head = rest.iter().take(3);
     if head.into_iter().any(|tree| is_word(tree, "struct")) {
-        let end = TokenTree::Punct(proc_macro2::Punct::new(
-            ';',
-            proc_macro2::Spacing::Alone,
-        ));
-        return Part::Struct(line.into_iter().chain([end]).collect());
+        let mut item = stream(&line);
+        let end = line.last().map_or_else(Span::call_site, TokenTree::span);
+        item.extend(quote::quote_spanned!(end=> ;));
+        return Part::Struct(item);
     }
     Part::Line(line)
 }

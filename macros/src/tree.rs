@@ -8,6 +8,8 @@ use syn::{Expr, ItemStruct, Path, Token};
 pub(crate) struct Source {
     /// The struct; `None` where it is missing.
     pub(crate) structure: Option<ItemStruct>,
+    /// Whether there was a struct that could not be read.
+    pub(crate) broken_structure: bool,
     /// The lines between the struct and the likelihood.
     pub(crate) lines: Vec<Line>,
     /// The likelihoods; a model has one.
@@ -20,8 +22,18 @@ pub(crate) enum Line {
     Declaration(Box<Declaration>),
     /// `let ..;`
     Let(Let),
-    /// A line with an error; what it names still counts as used.
-    Broken { name: Option<Ident>, tokens: TokenStream },
+    /// A line with an error.
+    Broken(Broken),
+}
+
+/// What is left of a line with an error.
+pub(crate) struct Broken {
+    /// The name that it declares, where that could be read.
+    pub(crate) name: Option<Ident>,
+    /// All behind the name; what it mentions still counts as used.
+    pub(crate) tokens: TokenStream,
+    /// The parts of the right side that were understood.
+    pub(crate) parts: Vec<Right>,
 }
 
 /// An ordinary `let` among the declarations.
@@ -114,8 +126,8 @@ pub(crate) enum Piece {
     Braces(Span, Vec<Piece>),
     /// A `~` line.
     Observation(Box<Observation>),
-    /// A `~` line with an error.
-    Broken,
+    /// A `~` line with an error, and its right side where that has none.
+    Broken(Option<Box<Sampling>>),
 }
 
 /// `data ~ ..;` in the likelihood.
@@ -138,7 +150,7 @@ impl Line {
     pub(crate) fn declared(&self) -> Option<&Ident> {
         match self {
             Self::Declaration(declaration) => Some(&declaration.name),
-            Self::Broken { name, .. } => name.as_ref(),
+            Self::Broken(broken) => broken.name.as_ref(),
             Self::Let(_) => None,
         }
     }
@@ -147,9 +159,16 @@ impl Line {
 impl Declaration {
     /// The blocks on its right; none if it is a distribution.
     pub(crate) fn terms(&self) -> &[Term] {
-        match &self.right {
-            Right::Blocks(terms) => terms,
-            Right::Distribution(_) => &[],
+        self.right.terms()
+    }
+}
+
+impl Right {
+    /// The blocks in it.
+    pub(crate) fn terms(&self) -> &[Term] {
+        match self {
+            Self::Blocks(terms) => terms,
+            Self::Distribution(_) => &[],
         }
     }
 }
@@ -173,20 +192,26 @@ impl Value {
 }
 
 impl Body {
-    /// All `~` lines that were understood, at any depth.
-    pub(crate) fn observations(&self) -> Vec<&Observation> {
+    /// All `~` lines, at any depth: left and right side, if understood.
+    pub(crate) fn lines(&self) -> Vec<(Option<&Expr>, &Sampling)> {
         let mut found = Vec::new();
         collect(&self.pieces, &mut found);
         found
     }
 }
 
-fn collect<'a>(pieces: &'a [Piece], found: &mut Vec<&'a Observation>) {
+fn collect<'a>(
+    pieces: &'a [Piece],
+    found: &mut Vec<(Option<&'a Expr>, &'a Sampling)>,
+) {
     for piece in pieces {
         match piece {
-            Piece::Observation(observation) => found.push(observation),
+            Piece::Observation(line) => {
+                found.push((Some(&line.data), &line.law));
+            }
+            Piece::Broken(Some(law)) => found.push((None, law)),
             Piece::Braces(_, inner) => collect(inner, found),
-            Piece::Token(_) | Piece::Broken => {}
+            Piece::Token(_) | Piece::Broken(None) => {}
         }
     }
 }
