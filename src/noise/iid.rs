@@ -2,15 +2,25 @@
 
 use rand_distr::{Distribution, StandardNormal};
 
-use super::{Conditional, Grid, Noise};
+use super::gaussian::Gaussian;
+use super::{Conditional, Grid, Noise, is_positive, one_per_time};
 use crate::block::{Block, Field};
 use crate::error::Stop;
-use crate::prior::LN_SQRT_2PI;
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 
 /// r_i ~ N(0, sigma2 + s_i^2), independent; s_i is the known standard error
 /// of the value, 0 where none is given (Heredia et al. 2020, equation 6).
+///
+/// ```
+/// use couloir::noise::{Grid, Iid, Noise};
+/// use couloir::scalar::{Plain, Real};
+/// let noise = Iid::<Real<Plain>> { sigma2: Real::new(4.0) };
+/// let at = Grid::new(vec![0.0, 1.0], None);
+/// let total = noise.log_likelihood(&at, &[2.0.into(), 0.0.into()]);
+/// let density = 1.0 / (8.0 * std::f64::consts::PI);
+/// assert!((total.unwrap().value() - (density.ln() - 0.5)).abs() < 1e-12);
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Iid<S> {
     /// The variance, in the squared unit of the recording.
@@ -20,10 +30,20 @@ pub struct Iid<S> {
 impl<S: Clone> Block<S> for Iid<S> {
     const NAME: &'static str = "iid";
     const FIELDS: &'static [Field] =
-        &[Field::new("sigma2", "unit2", "InverseGamma(2, 1)")];
+        &[Field::new("sigma2", "value2", "InverseGamma(2, 1)")];
 
     fn from_values(values: &[S]) -> Self {
         Self { sigma2: values[0].clone() }
+    }
+}
+
+impl<K: Kind> Iid<Real<K>> {
+    fn admit(&self) -> Result<(), Stop> {
+        if is_positive(self.sigma2) {
+            Ok(())
+        } else {
+            Err(Stop::Reject("the variance sigma2 is not positive"))
+        }
     }
 }
 
@@ -38,9 +58,8 @@ impl<K: Kind> Noise<K> for Iid<Real<K>> {
         residuals: &[Real<K>],
         visit: &mut dyn FnMut(Conditional<K>),
     ) -> Result<(), Stop> {
-        if !(self.sigma2 > 0.0) {
-            return Err(Stop::Reject("the variance sigma2 is not positive"));
-        }
+        self.admit()?;
+        one_per_time(at, residuals)?;
         match at.standard_errors() {
             None => {
                 let law = Gaussian::new(self.sigma2);
@@ -55,7 +74,28 @@ impl<K: Kind> Noise<K> for Iid<Real<K>> {
         Ok(())
     }
 
+    fn log_likelihood(
+        &self,
+        at: &Grid,
+        residuals: &[Real<K>],
+    ) -> Result<Real<K>, Stop> {
+        self.admit()?;
+        one_per_time(at, residuals)?;
+        let terms = residuals.iter();
+        Ok(match at.standard_errors() {
+            None => Gaussian::new(self.sigma2)
+                .of_squares(terms.len(), terms.map(|&r| r * r).sum()),
+            Some(errors) => terms
+                .zip(errors)
+                .map(|(&r, s)| {
+                    Gaussian::new(self.sigma2 + s * s).at(r).log_density
+                })
+                .sum(),
+        })
+    }
+
     fn draw(&self, at: &Grid, rng: &mut Rng) -> Result<Vec<f64>, Stop> {
+        self.admit()?;
         let errors = at.standard_errors();
         Ok((0..at.len())
             .map(|i| {
@@ -64,32 +104,5 @@ impl<K: Kind> Noise<K> for Iid<Real<K>> {
                 z * (self.sigma2.value() + known).sqrt()
             })
             .collect())
-    }
-}
-
-/// A normal density of mean 0 with its constants worked out once.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Gaussian<K: Kind> {
-    constant: Real<K>,
-    half_precision: Real<K>,
-    sd: f64,
-}
-
-impl<K: Kind> Gaussian<K> {
-    #[inline]
-    pub(crate) fn new(variance: Real<K>) -> Self {
-        Self {
-            constant: -0.5 * variance.ln() - LN_SQRT_2PI,
-            half_precision: 0.5 / variance,
-            sd: variance.value().sqrt(),
-        }
-    }
-
-    #[inline]
-    pub(crate) fn at(&self, r: Real<K>) -> Conditional<K> {
-        Conditional {
-            log_density: self.constant - r * r * self.half_precision,
-            innovation: r.value() / self.sd,
-        }
     }
 }

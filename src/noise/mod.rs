@@ -5,13 +5,22 @@
 //! it; likelihood, pointwise likelihood and standardised innovations are
 //! three listeners to that walk.
 
+mod ar;
+mod catalogue;
+mod gaussian;
 mod grid;
 mod iid;
+mod student;
+#[cfg(test)]
+mod tests;
 
+pub use ar::Ar;
+pub use catalogue::{NoiseEntry, NoiseFor, names, parse};
 pub use grid::{Grid, Spacing};
 pub use iid::Iid;
+pub use student::Student;
 
-use crate::error::Stop;
+use crate::error::{Error, Stop};
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 
@@ -20,9 +29,9 @@ use crate::seed::Rng;
 pub struct Conditional<K: Kind> {
     /// ln p(r_i | r_1 .. r_(i-1)).
     pub log_density: Real<K>,
-    /// The innovation, transformed to a standard normal deviate under the
-    /// noise.
-    pub innovation: f64,
+    /// The innovation over its scale, as the noise's own law sees it;
+    /// [`Noise::standardise`] makes it a standard normal deviate.
+    pub deviate: f64,
 }
 
 /// A distribution of residuals.
@@ -60,4 +69,39 @@ pub trait Noise<K: Kind> {
         self.walk(at, residuals, &mut |value| total += value.log_density)?;
         Ok(total)
     }
+
+    /// The standard normal deviate that a [`Conditional::deviate`] stands
+    /// for; the same number where the innovations are normal.
+    fn standardise(&self, deviate: f64) -> f64 {
+        deviate
+    }
+
+    /// The innovations as standard normal deviates: independent draws of
+    /// N(0, 1) where the noise is the one that made the residuals.
+    fn innovations(
+        &self,
+        at: &Grid,
+        residuals: &[Real<K>],
+    ) -> Result<Vec<f64>, Stop> {
+        let mut deviates = Vec::with_capacity(residuals.len());
+        self.walk(at, residuals, &mut |value| deviates.push(value.deviate))?;
+        Ok(deviates.into_iter().map(|d| self.standardise(d)).collect())
+    }
+}
+
+/// Fails where there is not one residual per time.
+fn one_per_time<T>(at: &Grid, residuals: &[T]) -> Result<(), Stop> {
+    if residuals.len() == at.len() {
+        return Ok(());
+    }
+    Err(Stop::Fail(Error::inference(format!(
+        "{} residuals for {} recorded times",
+        residuals.len(),
+        at.len()
+    ))))
+}
+
+/// Whether a parameter is a positive finite number.
+fn is_positive<K: Kind>(x: Real<K>) -> bool {
+    x > 0.0 && x.value().is_finite()
 }

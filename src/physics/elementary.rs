@@ -12,12 +12,24 @@ use crate::scalar::{Kind, Real, polynomial};
 pub(crate) fn atanhc<K: Kind>(z: Real<K>) -> Real<K> {
     let x = z.value();
     let value = atanhc_value(x);
-    let slope = if x.abs() < 0.05 {
+    let slope = if x.abs() < 3e-3 {
+        head::<6>(x, &ATANHC_SLOPE)
+    } else if x.abs() < 0.05 {
         polynomial(x, &ATANHC_SLOPE)
     } else {
         (1.0 / (1.0 - x) - value) / (2.0 * x)
     };
     z.chain(value, slope)
+}
+
+/// The first `N` terms of a power series, where x is too small for more.
+#[inline(always)]
+fn head<const N: usize>(x: f64, coefficients: &[f64]) -> f64 {
+    let mut sum = coefficients[N - 1];
+    for n in (0..N - 1).rev() {
+        sum = sum * x + coefficients[n];
+    }
+    sum
 }
 
 /// 1/(2n+1), and n/(2n+1) one place on.
@@ -48,7 +60,7 @@ const fn derivative<const N: usize, const M: usize>(c: &[f64; N]) -> [f64; M] {
 #[inline(always)]
 fn atanhc_value(x: f64) -> f64 {
     if x.abs() < 3e-3 {
-        polynomial(x, ATANHC.first_chunk::<6>().unwrap_or(&[1.0; 6]))
+        head::<6>(x, &ATANHC)
     } else if x.abs() < 0.05 {
         polynomial(x, &ATANHC)
     } else if x > 0.0 {
@@ -64,7 +76,9 @@ fn atanhc_value(x: f64) -> f64 {
 #[inline(always)]
 pub(crate) fn expc<K: Kind>(x: Real<K>) -> Real<K> {
     let v = x.value();
-    if v.abs() < 0.1 {
+    if v.abs() < 0.04 {
+        x.chain(head::<8>(v, &EXPC), head::<8>(v, &EXPC_SLOPE))
+    } else if v.abs() < 0.1 {
         x.chain(polynomial(v, &EXPC), polynomial(v, &EXPC_SLOPE))
     } else {
         let value = -(-v).exp_m1() / v;

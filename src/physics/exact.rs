@@ -21,11 +21,25 @@ pub(crate) struct Force<K: Kind> {
     pub(crate) c: Real<K>,
 }
 
+/// A speed u with its square w, which the solution over distance needs.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pace<K: Kind> {
+    pub(crate) u: Real<K>,
+    pub(crate) w: Real<K>,
+}
+
+impl<K: Kind> Pace<K> {
+    #[inline(always)]
+    pub(crate) fn new(u: Real<K>) -> Self {
+        Self { u, w: u * u }
+    }
+}
+
 /// How a leg ends.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum End<K: Kind> {
     /// At its far border, with this speed after this time.
-    Leaves { speed: Real<K>, after: Real<K> },
+    Leaves { arrival: Pace<K>, after: Real<K> },
     /// At rest, after this distance and time.
     Stops { distance: Real<K>, after: Real<K> },
     /// Never: the border is not reached in any time.
@@ -42,30 +56,31 @@ impl<K: Kind> Force<K> {
     /// How a stretch of the given length ends that is entered with speed `u`
     /// (positive, or 0 with a > 0).
     #[inline(always)]
-    pub(crate) fn traverse(&self, u: Real<K>, length: Real<K>) -> End<K> {
+    pub(crate) fn traverse(&self, pace: Pace<K>, length: Real<K>) -> End<K> {
         if self.b.is_constantly_zero() {
-            self.traverse_quadratic(u, length)
+            self.traverse_quadratic(pace, length)
         } else {
-            self.traverse_riccati(u, length)
+            self.traverse_riccati(pace.u, length)
         }
     }
 
     #[inline(always)]
-    fn traverse_quadratic(&self, u: Real<K>, length: Real<K>) -> End<K> {
-        let (a, c) = (self.a, self.c);
+    fn traverse_quadratic(&self, pace: Pace<K>, length: Real<K>) -> End<K> {
+        let (a, c, u) = (self.a, self.c, pace.u);
         if length.value() == f64::INFINITY {
             return self.endless(u);
         }
         let x = c * length * 2.0;
         let spread = expc(x) * length * 2.0;
         let decay = 1.0 - c * spread;
-        let w = u * u * decay + a * spread;
+        let w = pace.w * decay + a * spread;
         if w.value() <= 0.0 {
             return self.stop(u);
         }
         let speed = w.sqrt();
         let q = spread / (speed + u * decay);
-        End::Leaves { speed, after: q * atanhc(a * c * q * q) }
+        let after = q * atanhc(a * c * q * q);
+        End::Leaves { arrival: Pace { u: speed, w }, after }
     }
 
     /// On a slope without end the mass stops or goes on for ever.
@@ -191,7 +206,8 @@ impl<K: Kind> Force<K> {
         let t = Real::new(t);
         let miss = self.distance_after(u, t) - length;
         let after = t - miss / self.speed_after(u, t).value();
-        End::Leaves { speed: self.speed_after(u, after), after }
+        let arrival = Pace::new(self.speed_after(u, after));
+        End::Leaves { arrival, after }
     }
 
     fn stop_riccati(&self, u: Real<K>) -> Option<End<K>> {

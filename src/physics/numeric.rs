@@ -9,7 +9,7 @@ use ode_solvers::continuous_output_model::ContinuousOutputModel;
 use ode_solvers::dop_shared::IntegrationError;
 use ode_solvers::{Dopri5, System};
 
-use super::exact::End;
+use super::exact::{End, Pace};
 use super::friction::{Friction, Site};
 use super::track::Piece;
 use super::walk::{Path, Release, Rest, State, Walker, first_piece, site};
@@ -110,7 +110,7 @@ impl<'a, K: Kind, L: Friction<K>> NumericWalker<'a, K, L> {
                 let late = after - t;
                 let speed = u + self.acceleration(u) * late;
                 self.arrives = true;
-                (End::Leaves { speed, after }, length)
+                (End::Leaves { arrival: Pace::new(speed), after }, length)
             }
             (_, Some(t)) => {
                 let (s, u) = unpack(&self.at(t));
@@ -120,7 +120,8 @@ impl<'a, K: Kind, L: Friction<K>> NumericWalker<'a, K, L> {
             }
             _ => {
                 let (s, speed) = unpack(&y);
-                (End::Leaves { speed, after: Real::new(last) }, s)
+                let arrival = Pace::new(speed);
+                (End::Leaves { arrival, after: Real::new(last) }, s)
             }
         };
         let (End::Leaves { after, .. } | End::Stops { after, .. }) = end
@@ -161,9 +162,9 @@ impl<K: Kind, L: Friction<K>> Walker<K> for NumericWalker<'_, K, L> {
 
     fn advance(&mut self) -> Result<(), Stop> {
         match self.end {
-            End::Leaves { speed, after } => {
+            End::Leaves { arrival, after } => {
                 self.begins += after;
-                self.speed = speed;
+                self.speed = arrival.u;
                 self.within += self.covers;
                 if self.arrives {
                     self.within = Real::new(0.0);

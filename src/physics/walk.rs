@@ -5,7 +5,7 @@
 //! the exact family, the one in `numeric` the rest; sampling a flow at given
 //! times and following it to rest are written once, over both.
 
-use super::exact::{End, Force};
+use super::exact::{End, Force, Pace};
 use super::friction::{Friction, Rate, Site, Varies};
 use super::numeric::NumericWalker;
 use super::track::{Piece, Track};
@@ -187,7 +187,7 @@ struct ExactWalker<'a, K: Kind, L> {
     within: Real<K>,
     /// Time [s] and speed [m/s] at which it begins.
     begins: Real<K>,
-    speed: Real<K>,
+    pace: Pace<K>,
     /// How long it is [m].
     length: Real<K>,
     /// Whether the bed carries no load: a bend has lifted the mass off.
@@ -220,7 +220,7 @@ impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
             index,
             within,
             begins: zero,
-            speed: release.speed,
+            pace: Pace::new(release.speed),
             length: zero,
             lifted: false,
             crosses: false,
@@ -246,7 +246,7 @@ impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
             return self.begin(piece, &rate);
         }
         let lift_off = lift_off(piece, &rate);
-        self.lifted = lift_off.is_some_and(|speed| self.speed > speed);
+        self.lifted = lift_off.is_some_and(|speed| self.pace.u > speed);
         self.begin_bent(piece, &rate, lift_off)
     }
 
@@ -281,7 +281,7 @@ impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
         self.set_off(piece)?;
         let Some(threshold) = lift_off else { return Ok(()) };
         let arrives = match self.end {
-            End::Leaves { speed, .. } => speed,
+            End::Leaves { arrival, .. } => arrival.u,
             _ => Real::new(0.0),
         };
         let crosses = if self.lifted {
@@ -289,10 +289,10 @@ impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
         } else {
             arrives > threshold
         };
-        let after = self.force.time_to_speed(self.speed, threshold);
+        let after = self.force.time_to_speed(self.pace.u, threshold);
         if !self.resting && crosses && after.value() >= 0.0 {
-            self.length = self.force.distance_after(self.speed, after);
-            self.end = End::Leaves { speed: threshold, after };
+            self.length = self.force.distance_after(self.pace.u, after);
+            self.end = End::Leaves { arrival: Pace::new(threshold), after };
             self.crosses = true;
             self.ends = (self.begins + after).value();
         }
@@ -303,11 +303,11 @@ impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
     #[inline(always)]
     fn set_off(&mut self, piece: &Piece) -> Result<(), Stop> {
         self.length = Real::new(piece.length) - self.within;
-        if self.speed.value() <= 0.0 && self.force.a.value() <= 0.0 {
+        if self.pace.u.value() <= 0.0 && self.force.a.value() <= 0.0 {
             self.come_to_rest();
             return Ok(());
         }
-        self.end = self.force.traverse(self.speed, self.length);
+        self.end = self.force.traverse(self.pace, self.length);
         let after = match self.end {
             End::Leaves { after, .. } | End::Stops { after, .. } => after,
             End::Never => Real::new(f64::INFINITY),
@@ -322,7 +322,7 @@ impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
     #[cold]
     fn come_to_rest(&mut self) {
         let zero = Real::new(0.0);
-        self.speed = zero;
+        self.pace = Pace::new(zero);
         self.force = Force { a: zero, b: zero, c: zero };
         self.end = End::Never;
         self.ends = f64::INFINITY;
@@ -349,9 +349,9 @@ impl<K: Kind, L: Friction<K>> Walker<K> for ExactWalker<'_, K, L> {
     #[inline(always)]
     fn advance(&mut self) -> Result<(), Stop> {
         match self.end {
-            End::Leaves { speed, after } => {
+            End::Leaves { arrival, after } => {
                 self.begins += after;
-                self.speed = speed;
+                self.pace = arrival;
                 if self.crosses {
                     return self.cross();
                 }
@@ -371,14 +371,14 @@ impl<K: Kind, L: Friction<K>> Walker<K> for ExactWalker<'_, K, L> {
 
     #[inline(always)]
     fn speed_at(&self, time: f64) -> Real<K> {
-        self.force.speed_after(self.speed, time - self.begins)
+        self.force.speed_after(self.pace.u, time - self.begins)
     }
 
     #[inline]
     fn state_at(&self, time: f64) -> State<K> {
         let after = time - self.begins;
-        let speed = self.force.speed_after(self.speed, after);
-        let covered = self.force.distance_after(self.speed, after);
+        let speed = self.force.speed_after(self.pace.u, after);
+        let covered = self.force.distance_after(self.pace.u, after);
         State {
             speed,
             distance: self.place() + covered,

@@ -1,9 +1,9 @@
 //! The normal distribution.
 
 use rand_distr::{Distribution, StandardNormal};
-use statrs::distribution::ContinuousCDF;
 
-use super::{Prior, Support};
+use super::special::normal_quantile;
+use super::{Prior, Support, impossible, positive, quantile_of};
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 
@@ -31,15 +31,21 @@ impl<K: Kind> Normal<K> {
     pub fn new(mean: impl Into<Real<K>>, sd: impl Into<Real<K>>) -> Self {
         Self { mean: mean.into(), sd: sd.into() }
     }
+
+    /// Mean and standard deviation, if there is such a distribution.
+    fn values(&self) -> Option<(f64, f64)> {
+        let (mean, sd) = (self.mean.value(), self.sd.value());
+        (mean.is_finite() && positive(sd)).then_some((mean, sd))
+    }
 }
 
 impl<K: Kind> Prior<K> for Normal<K> {
     #[inline]
     fn log_density(&self, x: Real<K>) -> Real<K> {
-        if !(self.sd > 0.0) {
-            return Real::new(f64::NEG_INFINITY);
-        }
         let deviate = (x - self.mean) / self.sd;
+        if !(positive(self.sd.value()) && deviate.value().is_finite()) {
+            return impossible();
+        }
         -0.5 * deviate * deviate - self.sd.ln() - LN_SQRT_2PI
     }
 
@@ -48,12 +54,13 @@ impl<K: Kind> Prior<K> for Normal<K> {
     }
 
     fn quantile(&self, p: f64) -> Option<f64> {
-        let z = statrs::distribution::Normal::standard().inverse_cdf(p);
-        Some(self.mean.value() + self.sd.value() * z)
+        let (mean, sd) = self.values()?;
+        quantile_of(&self.support(), p, |p| mean + sd * normal_quantile(p))
     }
 
     fn draw(&self, rng: &mut Rng) -> Option<f64> {
+        let (mean, sd) = self.values()?;
         let z: f64 = StandardNormal.sample(rng);
-        Some(self.mean.value() + self.sd.value() * z)
+        Some(self.support().nearest(mean + sd * z))
     }
 }

@@ -43,15 +43,15 @@ impl<K: Kind> Support<K> {
             Self::Line => (z, Real::new(0.0)),
             Self::Above(low) => (low + z.exp(), z),
             Self::Between(low, high) => {
-                // s and 1 - s both without cancellation.
-                let s = 1.0 / (1.0 + (-z).exp());
-                let t = 1.0 / (1.0 + z.exp());
-                let width = high - low;
-                let x =
-                    if s < 0.5 { low + width * s } else { high - width * t };
-                // ln(s t) = -|z| - 2 ln(1 + e^-|z|).
+                // The smaller of s = logistic(z) and 1 - s, so that nothing
+                // cancels and no exponential overflows.
                 let a = -z.abs();
-                (x, a - 2.0 * a.exp().ln_1p() + width.ln())
+                let e = a.exp();
+                let width = high - low;
+                let part = width * (e / (1.0 + e));
+                let x = if z < 0.0 { low + part } else { high - part };
+                // ln(s (1 - s)) = -|z| - 2 ln(1 + e^-|z|).
+                (x, a - 2.0 * e.ln_1p() + width.ln())
             }
         }
     }
@@ -65,5 +65,22 @@ impl<K: Kind> Support<K> {
                 (x - low.value()).ln() - (high.value() - x).ln()
             }
         }
+    }
+
+    /// The two ends.
+    pub(super) fn ends(&self) -> (f64, f64) {
+        match *self {
+            Self::Line => (f64::NEG_INFINITY, f64::INFINITY),
+            Self::Above(low) => (low.value(), f64::INFINITY),
+            Self::Between(low, high) => (low.value(), high.value()),
+        }
+    }
+
+    /// The number nearest to `x` that lies strictly inside, where there is
+    /// one; above 0 the smallest of full precision, so that 1/x is finite.
+    pub(super) fn nearest(&self, x: f64) -> f64 {
+        let (low, high) = self.ends();
+        let least = low.next_up().max(low + f64::MIN_POSITIVE);
+        x.max(least).min(high.next_down())
     }
 }

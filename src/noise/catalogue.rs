@@ -1,0 +1,299 @@
+//! Noises by their names in event files.
+
+use std::fmt::Debug;
+use std::marker::PhantomData;
+
+use super::{Ar, Iid, Noise, Student};
+use crate::block::{Block, Field};
+use crate::error::{Error, Stop};
+use crate::scalar::{Grad, Kind, Plain, Real};
+
+/// The longest list a noise may have: an order above says that the residuals
+/// are not noise, and costs in the order cubed where values are missing.
+const LONGEST: usize = 20;
+
+/// Builds a noise of number kind `K` from the values of its parameters.
+pub trait NoiseFor<K: Kind> {
+    /// Calls `then` with the noise that has these values, in the order of
+    /// [`NoiseEntry::parameters`].
+    ///
+    /// `Err(Stop::Fail)`, without the call, where they are not as many.
+    fn with(
+        &self,
+        values: &[Real<K>],
+        then: &mut dyn FnMut(&dyn Noise<K>),
+    ) -> Result<(), Stop>;
+}
+
+/// A noise as an event file names it, its parameters still open.
+pub trait NoiseEntry:
+    NoiseFor<Plain>
+    + NoiseFor<Grad<2>>
+    + NoiseFor<Grad<4>>
+    + NoiseFor<Grad<8>>
+    + Debug
+    + Send
+    + Sync
+{
+    /// Its name with its argument, such as "ar(2)".
+    fn name(&self) -> String;
+
+    /// The name and field of each parameter; a list of one is called as its
+    /// field (`phi`), a longer one `phi[1]`, `phi[2]` and so on.
+    fn parameters(&self) -> Vec<(String, Field)>;
+}
+
+/// Lists the noises: each is one entry here and one file.
+macro_rules! catalogue {
+    ($($noise:ident),* $(,)?) => {
+        const NOISES: &[Listed] = &[$(Listed {
+            name: <$noise<f64> as Block<f64>>::NAME,
+            fields: <$noise<f64> as Block<f64>>::FIELDS,
+            open: |length| Box::new(Entry {
+                length,
+                block: PhantomData::<fn() -> $noise<f64>>,
+            }),
+        }),*];
+
+        $(impl<K: Kind> NoiseFor<K> for Entry<$noise<f64>> {
+            fn with(
+                &self,
+                values: &[Real<K>],
+                then: &mut dyn FnMut(&dyn Noise<K>),
+            ) -> Result<(), Stop> {
+                self.admit(values.len())?;
+                then(&$noise::<Real<K>>::from_values(values));
+                Ok(())
+            }
+        }
+
+        impl NoiseEntry for Entry<$noise<f64>> {
+            fn name(&self) -> String {
+                self.full_name()
+            }
+
+            fn parameters(&self) -> Vec<(String, Field)> {
+                self.all_parameters()
+            }
+        })*
+    };
+}
+
+catalogue![Iid, Ar, Student];
+
+/// A noise of the catalogue.
+struct Listed {
+    name: &'static str,
+    fields: &'static [Field],
+    open: fn(usize) -> Box<dyn NoiseEntry>,
+}
+
+impl Listed {
+    fn has_list(&self) -> bool {
+        self.fields.iter().any(|f| f.list)
+    }
+
+    /// How an event file writes it.
+    fn pattern(&self) -> String {
+        let argument = if self.has_list() { "(k)" } else { "" };
+        format!("{}{argument}", self.name)
+    }
+}
+
+/// The block `B` with lists of that length.
+#[derive(Debug)]
+struct Entry<B> {
+    length: usize,
+    block: PhantomData<fn() -> B>,
+}
+
+impl<B: Block<f64>> Entry<B> {
+    fn full_name(&self) -> String {
+        let list = B::FIELDS.iter().any(|f| f.list);
+        let argument =
+            if list { format!("({})", self.length) } else { String::new() };
+        format!("{}{argument}", B::NAME)
+    }
+
+    fn all_parameters(&self) -> Vec<(String, Field)> {
+        let of = |field: &Field| -> Vec<(String, Field)> {
+            match (field.list, self.length) {
+                (false, _) | (true, 1) => {
+                    vec![(field.name.to_owned(), *field)]
+                }
+                (true, length) => (1..=length)
+                    .map(|i| (format!("{}[{i}]", field.name), *field))
+                    .collect(),
+            }
+        };
+        B::FIELDS.iter().flat_map(of).collect()
+    }
+
+    fn admit(&self, found: usize) -> Result<(), Stop> {
+        let lists = B::FIELDS.iter().filter(|f| f.list).count();
+        let expected = B::FIELDS.len() - lists + lists * self.length;
+        if found == expected {
+            return Ok(());
+        }
+        Err(Stop::Fail(Error::inference(format!(
+            "{} takes {expected} values, and was given {found}",
+            self.full_name()
+        ))))
+    }
+}
+
+/// How event files write the noises there are: "iid", "ar(k)" and so on.
+pub fn names() -> Vec<String> {
+    NOISES.iter().map(Listed::pattern).collect()
+}
+
+/// The noise that an event file names: "iid", "ar(2)", "student".
+///
+/// ```
+/// let noise = couloir::noise::parse("ar(2)")?;
+/// let names: Vec<String> =
+///     noise.parameters().into_iter().map(|(name, _)| name).collect();
+/// assert_eq!(names, ["phi[1]", "phi[2]", "sigma2"]);
+/// let error = couloir::noise::parse("studnet").unwrap_err();
+/// assert!(error.to_string().contains("did you mean \"student\"?"));
+/// # Ok::<(), couloir::Error>(())
+/// ```
+pub fn parse(text: &str) -> crate::Result<Box<dyn NoiseEntry>> {
+    let text = text.trim();
+    let (name, argument) = match text.split_once('(') {
+        None => (text, None),
+        Some((name, rest)) => match rest.strip_suffix(')') {
+            Some(argument) => (name.trim_end(), Some(argument.trim())),
+            None => {
+                return Err(Error::input(format!(
+                    "\"{text}\" opens a bracket and does not close it; write \
+                     it as in \"ar(2)\""
+                )));
+            }
+        },
+    };
+    let Some(noise) = NOISES.iter().find(|n| n.name == name) else {
+        return Err(unknown(name));
+    };
+    Ok((noise.open)(length(noise, argument)?))
+}
+
+/// How long the lists of the noise are, from what stands in its brackets.
+fn length(noise: &Listed, argument: Option<&str>) -> crate::Result<usize> {
+    let name = noise.name;
+    match (noise.has_list(), argument) {
+        (false, None) => Ok(0),
+        (false, Some(found)) => Err(Error::input(format!(
+            "\"{name}\" takes no argument, and has ({found}); write \"{name}\""
+        ))),
+        (true, None) => Err(Error::input(format!(
+            "\"{name}\" needs its order; write \"{name}(1)\" for the first"
+        ))),
+        (true, Some(found)) => match found.parse() {
+            Ok(k @ 1..=LONGEST) => Ok(k),
+            _ => Err(Error::input(format!(
+                "the order of \"{name}\" is a whole number from 1 to \
+                 {LONGEST}, and \"{found}\" is none; write \"{name}(1)\" for \
+                 the first"
+            ))),
+        },
+    }
+}
+
+fn unknown(found: &str) -> Error {
+    let nearest = NOISES
+        .iter()
+        .min_by_key(|n| edits(found, n.name))
+        .filter(|n| edits(found, n.name) <= 1 + n.name.len() / 3);
+    let mend = nearest.map_or(String::new(), |n| {
+        format!("; did you mean \"{}\"?", n.pattern())
+    });
+    Error::input(format!(
+        "there is no noise \"{found}\", there are {}{mend}",
+        names().join(", ")
+    ))
+}
+
+/// How many letters to insert, delete or change between two words
+/// (Levenshtein's distance).
+fn edits(from: &str, to: &str) -> usize {
+    let mut row: Vec<usize> = (0..=to.chars().count()).collect();
+    for (i, a) in from.chars().enumerate() {
+        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
+        for (j, b) in to.chars().enumerate() {
+            let changed = diagonal + usize::from(a != b);
+            diagonal = row[j + 1];
+            row[j + 1] = changed.min(diagonal + 1).min(row[j] + 1);
+        }
+    }
+    row.last().copied().unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::noise::Grid;
+
+    #[test]
+    fn names_and_parameters_are_those_of_the_blocks() {
+        let listed = |text: &str| -> Vec<String> {
+            let entry = parse(text).unwrap();
+            assert_eq!(entry.name(), text);
+            entry.parameters().into_iter().map(|(name, _)| name).collect()
+        };
+        assert_eq!(names(), ["iid", "ar(k)", "student"]);
+        assert_eq!(listed("iid"), ["sigma2"]);
+        assert_eq!(listed("ar(1)"), ["phi", "sigma2"]);
+        assert_eq!(listed("ar(3)"), ["phi[1]", "phi[2]", "phi[3]", "sigma2"]);
+        assert_eq!(listed("student"), ["dof", "scale"]);
+        assert_eq!(parse(" ar( 20 ) ").unwrap().name(), "ar(20)");
+    }
+
+    #[test]
+    fn wrong_names_are_answered_with_a_mend() {
+        for (text, answer) in [
+            ("idd", "no noise \"idd\", there are iid, ar(k), student"),
+            ("idd", "; did you mean \"iid\"?"),
+            ("ar", "write \"ar(1)\""),
+            ("ra(2)", "there is no noise \"ra\""),
+            ("ar(0)", "from 1 to 20, and \"0\" is none"),
+            ("ar(21)", "from 1 to 20, and \"21\" is none"),
+            ("ar(-1)", "\"-1\" is none"),
+            ("ar(2", "does not close it"),
+            ("iid(3)", "takes no argument, and has (3)"),
+            ("", "there is no noise \"\""),
+            ("something", "there are iid, ar(k), student"),
+        ] {
+            let error = parse(text).unwrap_err();
+            assert!(error.is_input());
+            assert!(error.to_string().contains(answer), "{error}");
+        }
+        assert!(!parse("something").unwrap_err().to_string().contains("mean"));
+    }
+
+    #[test]
+    fn an_entry_is_the_block() {
+        let at = Grid::new(vec![0.0, 1.0, 2.0], None);
+        let values = [0.5, -0.2, 2.0];
+        let block = Ar::from_values(&values.map(Real::<Plain>::new));
+        let expected =
+            block.log_likelihood(&at, &values.map(Real::new)).unwrap();
+        let entry = parse("ar(2)").unwrap();
+        let mut found = f64::NAN;
+        let x = values.map(Real::<Grad<4>>::new);
+        entry
+            .with(&x, &mut |noise| {
+                found = noise.log_likelihood(&at, &x).unwrap().value();
+            })
+            .unwrap();
+        assert!((found - expected.value()).abs() < 1e-12);
+        assert!(entry.with(&x[..2], &mut |_| panic!("called")).is_err());
+    }
+
+    #[test]
+    fn edits_are_counted() {
+        assert_eq!(edits("kitten", "sitting"), 3);
+        assert_eq!(edits("", "iid"), 3);
+        assert_eq!(edits("ar", "ar"), 0);
+    }
+}

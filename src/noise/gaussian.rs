@@ -1,0 +1,45 @@
+//! The normal density of mean 0, with its constants worked out once.
+
+use super::Conditional;
+use crate::prior::LN_SQRT_2PI;
+use crate::scalar::{Kind, Real};
+
+/// ln p(r) = -r^2 / (2 v) - ln(v) / 2 - ln sqrt(2 pi) for a variance v in
+/// the squared unit of r.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Gaussian<K: Kind> {
+    constant: Real<K>,
+    half_precision: Real<K>,
+    inverse_sd: f64,
+}
+
+impl<K: Kind> Gaussian<K> {
+    #[inline]
+    pub(crate) fn new(variance: Real<K>) -> Self {
+        Self {
+            constant: -0.5 * variance.ln() - LN_SQRT_2PI,
+            half_precision: 0.5 / variance,
+            inverse_sd: 1.0 / variance.value().sqrt(),
+        }
+    }
+
+    /// One value.
+    #[inline]
+    pub(crate) fn at(&self, r: Real<K>) -> Conditional<K> {
+        Conditional {
+            log_density: self.constant - r * r * self.half_precision,
+            deviate: r.value() * self.inverse_sd,
+        }
+    }
+
+    /// The log density of `count` independent values with that sum of
+    /// squares.
+    #[inline]
+    pub(crate) fn of_squares(
+        &self,
+        count: usize,
+        squares: Real<K>,
+    ) -> Real<K> {
+        self.constant * count as f64 - squares * self.half_precision
+    }
+}

@@ -1,0 +1,65 @@
+//! The half-normal distribution.
+
+use std::f64::consts::{LN_2, SQRT_2};
+
+use rand_distr::{Distribution, StandardNormal};
+use statrs::function::erf::erf_inv;
+
+use super::{LN_SQRT_2PI, Prior, Support, impossible, positive, quantile_of};
+use crate::scalar::{Kind, Real};
+use crate::seed::Rng;
+
+/// HalfNormal(scale), for x > 0:
+/// p(x) = 2 exp(-x^2 / (2 scale^2)) / (scale sqrt(2 pi)).
+///
+/// ```
+/// use couloir::prior::{HalfNormal, Prior};
+/// use couloir::scalar::{Plain, Real};
+/// let prior = HalfNormal::<Plain>::new(2.0);
+/// assert!((prior.log_density(Real::new(2.0)).value() + 1.4189385).abs() < 1e-7);
+/// assert!((prior.quantile(0.95).unwrap() - 3.919928).abs() < 1e-6);
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct HalfNormal<K: Kind> {
+    scale: Real<K>,
+}
+
+impl<K: Kind> HalfNormal<K> {
+    /// From its scale, the standard deviation of the whole normal.
+    #[inline]
+    pub fn new(scale: impl Into<Real<K>>) -> Self {
+        Self { scale: scale.into() }
+    }
+
+    /// The scale, if there is such a distribution.
+    fn value(&self) -> Option<f64> {
+        let scale = self.scale.value();
+        positive(scale).then_some(scale)
+    }
+}
+
+impl<K: Kind> Prior<K> for HalfNormal<K> {
+    #[inline]
+    fn log_density(&self, x: Real<K>) -> Real<K> {
+        if !(positive(x.value()) && positive(self.scale.value())) {
+            return impossible();
+        }
+        let deviate = x / self.scale;
+        -0.5 * deviate * deviate - self.scale.ln() + (LN_2 - LN_SQRT_2PI)
+    }
+
+    fn support(&self) -> Support<K> {
+        Support::Above(Real::new(0.0))
+    }
+
+    fn quantile(&self, p: f64) -> Option<f64> {
+        let scale = self.value()?;
+        quantile_of(&self.support(), p, |p| scale * (SQRT_2 * erf_inv(p)))
+    }
+
+    fn draw(&self, rng: &mut Rng) -> Option<f64> {
+        let scale = self.value()?;
+        let z: f64 = StandardNormal.sample(rng);
+        Some(self.support().nearest(scale * z.abs()))
+    }
+}

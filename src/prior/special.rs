@@ -1,0 +1,103 @@
+//! The special functions that several distributions share.
+
+use statrs::function::gamma;
+
+use crate::scalar::{Kind, Real};
+
+/// ln of the gamma function for x > 0; its derivative, digamma, is worked
+/// out only for an `x` that has derivatives.
+#[inline]
+pub(super) fn ln_gamma<K: Kind>(x: Real<K>) -> Real<K> {
+    let value = gamma::ln_gamma(x.value());
+    if (0..K::DIRECTIONS).any(|i| x.partial(i) != 0.0) {
+        x.chain(value, gamma::digamma(x.value()))
+    } else {
+        Real::new(value)
+    }
+}
+
+/// ln(1 + q^2) without overflow.
+#[inline]
+pub(super) fn ln_1p_squared<K: Kind>(q: Real<K>) -> Real<K> {
+    let v = q.value();
+    if v.abs() < 1e8 {
+        q.chain((v * v).ln_1p(), 2.0 * v / (1.0 + v * v))
+    } else {
+        // 1 is lost beside q^2.
+        q.chain(2.0 * v.abs().ln(), 2.0 / v)
+    }
+}
+
+/// The standard normal quantile for 0 < p < 1.
+pub(super) fn normal_quantile(p: f64) -> f64 {
+    use statrs::distribution::{ContinuousCDF, Normal};
+    Normal::standard().inverse_cdf(p)
+}
+
+/// Where in `low..high` an increasing function vanishes, by Newton's steps
+/// from `start` and bisection where these leave what is left of the interval;
+/// `f` gives value and slope, minus infinity being a value too.
+///
+/// For the logarithm of a log-concave distribution function the steps from
+/// the far end of a tail never overshoot, so that bisection only helps where
+/// f underflows.
+pub(super) fn root(
+    (mut low, mut high): (f64, f64),
+    start: f64,
+    f: impl Fn(f64) -> (f64, f64),
+) -> f64 {
+    let mut u = start;
+    for _ in 0..200 {
+        let (value, slope) = f(u);
+        let newton = u - value / slope;
+        // Round-off of u and, as f is a logarithm, of f.
+        let round_off = 1e-15 * (u.abs() * slope + 1.0);
+        if newton.is_finite() && value.abs() <= round_off {
+            return newton;
+        }
+        if value > 0.0 {
+            high = high.min(u);
+        } else {
+            low = low.max(u);
+        }
+        u = if newton > low && newton < high {
+            newton
+        } else {
+            0.5 * (low + high)
+        };
+    }
+    u
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::Grad;
+
+    #[test]
+    fn ln_gamma_knows_factorials_and_their_slope() {
+        let y = ln_gamma(Real::<Grad<1>>::variable(5.0, 0));
+        assert!((y.value() - 24.0_f64.ln()).abs() < 1e-14);
+        // digamma(5) = 1 + 1/2 + 1/3 + 1/4 - Euler's constant.
+        let digamma = 25.0 / 12.0 - 0.577_215_664_901_532_9;
+        assert!((y.partial(0) - digamma).abs() < 1e-14);
+    }
+
+    #[test]
+    fn ln_1p_squared_is_smooth_where_its_forms_meet() {
+        let f = |q| ln_1p_squared(Real::<Grad<1>>::variable(q, 0));
+        let (below, above) = (f(-1e8 * (1.0 - 1e-15)), f(-1e8));
+        assert!((below.value() - above.value()).abs() < 1e-13);
+        assert!((below.partial(0) / above.partial(0) - 1.0).abs() < 1e-14);
+        assert!(
+            (f(1e300).value() / (600.0 * 10.0_f64.ln()) - 1.0).abs() < 1e-15
+        );
+    }
+
+    #[test]
+    fn root_bisects_where_newton_fails() {
+        // ln of a distribution function that underflows below -30.
+        let f = |u: f64| (if u < -30.0 { f64::NEG_INFINITY } else { u }, 1.0);
+        assert!(root((-1e3, 1e3), -1e3, f).abs() < 1e-14);
+    }
+}
