@@ -1,14 +1,13 @@
 //! The built-in distributions, as far as the macro has to know them.
 //!
 //! rustc holds back its own unresolved names beside a macro's errors, so the
-//! names and arguments are known here, and a test keeps them equal to
-//! `couloir::prior::NAMES`.
+//! names and arguments are known here; a test keeps them equal to those of
+//! `couloir::prior`.
 
 use proc_macro2::Ident;
 use syn::{Expr, ExprCall, Lit, Path, UnOp};
 
 use crate::errors::Errors;
-use crate::tokens::shown;
 use crate::tree::Distribution;
 
 /// A built-in distribution.
@@ -19,9 +18,9 @@ pub(crate) struct BuiltIn {
 
 /// One of its arguments.
 pub(crate) struct Argument {
-    name: &'static str,
+    pub(crate) name: &'static str,
     /// Whether it has to be above 0.
-    positive: bool,
+    pub(crate) positive: bool,
 }
 
 const fn real(name: &'static str) -> Argument {
@@ -42,10 +41,10 @@ const fn built_in(
 /// All of them.
 pub(crate) const BUILT_IN: &[BuiltIn] = &[
     built_in("Normal", &[real("mean"), positive("sd")]),
-    built_in("LogNormal", &[real("mean of ln x"), positive("sd of ln x")]),
+    built_in("LogNormal", &[real("mean"), positive("sd")]),
     built_in("Gamma", &[positive("shape"), positive("scale")]),
     built_in("InverseGamma", &[positive("shape"), positive("scale")]),
-    built_in("Exponential", &[positive("rate")]),
+    built_in("Exponential", &[positive("mean")]),
     built_in("Uniform", &[real("low"), real("high")]),
     built_in("Beta", &[positive("a"), positive("b")]),
     built_in("HalfNormal", &[positive("scale")]),
@@ -53,7 +52,7 @@ pub(crate) const BUILT_IN: &[BuiltIn] = &[
     built_in("Cauchy", &[real("location"), positive("scale")]),
     built_in(
         "StudentT",
-        &[positive("degrees of freedom"), real("location"), positive("scale")],
+        &[positive("freedom"), real("location"), positive("scale")],
     ),
     built_in("Flat", &[]),
 ];
@@ -103,7 +102,6 @@ impl Distribution {
 
     fn check_values(&self, known: &BuiltIn, errors: &mut Errors) {
         for (given, argument) in self.arguments.iter().zip(known.arguments) {
-            check_number(given, errors);
             if argument.positive && value(given).is_some_and(|x| x <= 0.0) {
                 let words = format!(
                     "the {} of `{}` has to be above 0",
@@ -111,6 +109,8 @@ impl Distribution {
                     known.written(),
                 );
                 errors.at(given, words);
+            } else {
+                check_number(given, errors);
             }
         }
         let values: Vec<_> = self.arguments.iter().map(value).collect();
@@ -128,9 +128,8 @@ impl Distribution {
 
 /// Reports a whole number where a real one is needed.
 pub(crate) fn check_number(given: &Expr, errors: &mut Errors) {
-    if is_whole(given) {
-        let text = shown(given);
-        let words = format!("a real number is needed here: write `{text}.0`");
+    if let (true, Some(x)) = (is_whole(given), value(given)) {
+        let words = format!("a real number is needed here: write `{x:?}`");
         errors.at(given, words);
     }
 }

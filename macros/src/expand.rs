@@ -8,7 +8,7 @@ use std::collections::HashSet;
 use proc_macro2::{Group, Ident, Span, TokenStream, TokenTree};
 use quote::{ToTokens, quote, quote_spanned};
 use syn::spanned::Spanned;
-use syn::{Expr, ExprReference, ItemStruct, Type};
+use syn::{Expr, ExprReference, Generics, ItemStruct, Path, Type};
 
 use crate::tree::{Body, Count, Declaration, Distribution, Field, Line};
 use crate::tree::{Observation, Piece, Right, Sampling, Source, Term, Value};
@@ -22,16 +22,18 @@ pub(crate) fn source(
 ) -> TokenStream {
     let Some(item) = &source.structure else { return TokenStream::new() };
     let kind = fresh.name("K");
-    let run = at(item.ident.span(), "run");
-    let run = if broken { quote!(_) } else { quote!(#run) };
     let writer = Writer { kind: &kind, fresh };
-    let body = match broken {
-        true => TokenStream::new(),
-        false => writer.program(source),
+    let (run, body) = match broken {
+        true => (quote!(_), writer.mentions(source)),
+        false => {
+            let run = at(item.ident.span(), "run");
+            (run.to_token_stream(), writer.program(source))
+        }
     };
     let bindings = item.fields.iter().filter_map(binding);
     let (name, constructor) = (&item.ident, constructor(item));
-    let (generics, arguments, conditions) = item.generics.split_for_impl();
+    let generics = shared(item);
+    let (generics, arguments, conditions) = generics.split_for_impl();
     let at = Span::mixed_site().located_at(name.span());
     quote_spanned! {at=>
         #item
@@ -47,6 +49,17 @@ pub(crate) fn source(
             }
         }
     }
+}
+
+/// The struct's generics; where there are any, which is an error already,
+/// without a second one for being no program.
+fn shared(item: &ItemStruct) -> Generics {
+    let mut generics = item.generics.clone();
+    if !generics.params.is_empty() {
+        let sync = syn::parse_quote!(Self: ::core::marker::Sync);
+        generics.make_where_clause().predicates.push(sync);
+    }
+    generics
 }
 
 /// `fn new(field, ..) -> Self`, as visible as the struct.
@@ -113,11 +126,11 @@ impl Fresh {
         Self(taken)
     }
 
-    /// `wanted`, with as many `_` as it takes to be new.
+    /// `wanted`, with as many `1` behind it as it takes to be new.
     fn name(&self, wanted: &str) -> Ident {
         let mut name = wanted.to_owned();
         while self.0.contains(&name) {
-            name.push('_');
+            name.push('1');
         }
         Ident::new(&name, Span::mixed_site())
     }
@@ -152,6 +165,38 @@ impl Writer<'_> {
         let lines = source.lines.iter().map(|line| self.line(line));
         let body = source.bodies.first().map(|body| self.body(body));
         quote!(#(#lines)* #body)
+    }
+
+    /// The blocks of a broken model, so that their imports count as used.
+    fn mentions(&self, source: &Source) -> TokenStream {
+        let rights = source.lines.iter().flat_map(|line| match line {
+            Line::Declaration(declaration) => {
+                std::slice::from_ref(&declaration.right)
+            }
+            Line::Broken(broken) => &broken.parts,
+            Line::Let(_) => &[],
+        });
+        let terms = rights.flat_map(Right::terms).enumerate();
+        terms
+            .map(|(i, term)| {
+                let (_, alias) = self.alias(i, &term.path);
+                quote!(#[allow(dead_code)] #alias)
+            })
+            .collect()
+    }
+
+    /// `type Name<S> = Path<S>;`, and its name.
+    ///
+    /// It names the user's type once, so that a misspelt one is one error.
+    fn alias(&self, i: usize, path: &Path) -> (Ident, TokenStream) {
+        let site = Span::mixed_site().located_at(path.span());
+        let mut name = self.fresh.name(&format!("Block{i}"));
+        name.set_span(site);
+        let number = self.fresh.name("S");
+        let item = quote_spanned! {site=>
+            type #name<#number> = #path<#number>;
+        };
+        (name, item)
     }
 
     fn line(&self, line: &Line) -> TokenStream {
@@ -247,9 +292,6 @@ impl Writer<'_> {
     }
 
     /// One block's struct expression; its fields go to `lines` before.
-    ///
-    /// An alias names the user's type once, so that a misspelt one is one
-    /// error.
     fn term(
         &self,
         i: usize,
@@ -257,12 +299,10 @@ impl Writer<'_> {
         count: &Count,
         lines: &mut TokenStream,
     ) -> TokenStream {
-        let (path, kind) = (&term.path, self.kind);
-        let span = path.span();
-        let site = Span::mixed_site().located_at(span);
-        let mut alias = self.fresh.name(&format!("Block{i}"));
-        alias.set_span(site);
-        lines.extend(quote_spanned!(site=> type #alias<S> = #path<S>;));
+        let kind = self.kind;
+        let site = Span::mixed_site().located_at(term.path.span());
+        let (alias, item) = self.alias(i, &term.path);
+        lines.extend(item);
         let mut fields = Vec::new();
         for (j, field) in term.fields.iter().enumerate() {
             let local = at(value_span(field), &format!("value_{i}_{j}"));
