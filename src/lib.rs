@@ -1,15 +1,16 @@
 //! couloir
-#[macro_use]
-pub mod scalar;
 pub mod block;
 pub mod context;
 pub mod declared;
+pub mod draws;
 pub mod error;
+pub mod io;
 pub mod model;
 pub mod noise;
 pub mod observe;
 pub mod physics;
 pub mod prior;
+pub mod scalar;
 pub mod seed;
 
 pub use couloir_macros::model;

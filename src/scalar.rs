@@ -152,7 +152,7 @@ impl<const N: usize> Kind for Grad<N> {
     ) -> Dual<N> {
         let mut partials = [0.0; N];
         for (i, p) in partials.iter_mut().enumerate() {
-            *p = slope_x * x.partials[i] + slope_y * y.partials[i];
+            *p = fused(slope_x, x.partials[i], slope_y * y.partials[i]);
         }
         Dual { value, partials }
     }
@@ -255,6 +255,18 @@ impl<K: Kind> Real<K> {
     pub fn powf(self, p: f64) -> Self {
         let x = self.value();
         self.chain(x.powf(p), p * x.powf(p - 1.0))
+    }
+
+    /// c\[0\] + x c\[1\] + x^2 c\[2\] + ... at x = self.
+    #[inline(always)]
+    pub fn polynomial(self, coefficients: &[f64]) -> Self {
+        let x = self.value();
+        let (mut value, mut slope) = (0.0, 0.0);
+        for &c in coefficients.iter().rev() {
+            slope = fused(slope, x, value);
+            value = fused(value, x, c);
+        }
+        self.chain(value, slope)
     }
 
     /// Sine.
@@ -449,7 +461,7 @@ operator!(
     div_assign,
     |x, y| x / y,
     1.0 / y,
-    -x / (y * y)
+    -(x / y) * (1.0 / y)
 );
 operator!(
     Rem,
@@ -518,21 +530,18 @@ impl<T> Arithmetic for T where
 {
 }
 
-/// Horner's scheme: c\[0\] + x (c\[1\] + x (c\[2\] + ...)).
+/// a b + c, in one rounding where the machine does that in one step.
 #[inline(always)]
-pub fn polynomial<S: Arithmetic>(x: S, coefficients: &[f64]) -> S {
-    coefficients.iter().rev().fold(S::zero(), |sum, &c| sum * x + c)
+pub fn fused(a: f64, b: f64, c: f64) -> f64 {
+    if cfg!(target_feature = "fma") { a.mul_add(b, c) } else { a * b + c }
 }
 
-/// Runs a macro once for every number kind that models are evaluated with.
-#[macro_export]
-#[doc(hidden)]
-macro_rules! for_each_gradient_width {
-    ($call:ident) => {
-        $call!(2);
-        $call!(4);
-        $call!(8);
-    };
+/// Horner's scheme: c\[0\] + x (c\[1\] + x (c\[2\] + ...)).
+#[inline(always)]
+pub fn polynomial(x: f64, coefficients: &[f64]) -> f64 {
+    let mut terms = coefficients.iter().rev();
+    let Some(&last) = terms.next() else { return 0.0 };
+    terms.fold(last, |sum, &c| fused(sum, x, c))
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use statrs::function::gamma::{digamma, ln_gamma};
 use super::{Conditional, Grid, Noise, is_positive, one_per_time};
 use crate::block::{Block, Field};
 use crate::error::Stop;
-use crate::scalar::{Kind, Real, polynomial};
+use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 
 /// r_i ~ t_dof(0, w_i), w_i^2 = scale^2 + s_i^2, independent; s_i is the known
@@ -177,7 +177,8 @@ fn log_peak<K: Kind>(dof: Real<K>) -> Real<K> {
         // Difference of two large numbers; by Stirling's series, error
         // below 1e-16 here.
         let u = 1.0 / a;
-        let rest = polynomial(u * u, &[-1.0 / 8.0, 1.0 / 192.0, -1.0 / 640.0]);
+        let rest =
+            (u * u).polynomial(&[-1.0 / 8.0, 1.0 / 192.0, -1.0 / 640.0]);
         return u * rest - crate::prior::LN_SQRT_2PI;
     }
     log_gamma(a + 0.5) - log_gamma(a) - 0.5 * (std::f64::consts::PI * dof).ln()

@@ -13,23 +13,13 @@ pub(crate) fn atanhc<K: Kind>(z: Real<K>) -> Real<K> {
     let x = z.value();
     let value = atanhc_value(x);
     let slope = if x.abs() < 3e-3 {
-        head::<6>(x, &ATANHC_SLOPE)
+        polynomial(x, &ATANHC_SLOPE[..6])
     } else if x.abs() < 0.05 {
         polynomial(x, &ATANHC_SLOPE)
     } else {
         (1.0 / (1.0 - x) - value) / (2.0 * x)
     };
     z.chain(value, slope)
-}
-
-/// The first `N` terms of a power series, where x is too small for more.
-#[inline(always)]
-fn head<const N: usize>(x: f64, coefficients: &[f64]) -> f64 {
-    let mut sum = coefficients[N - 1];
-    for n in (0..N - 1).rev() {
-        sum = sum * x + coefficients[n];
-    }
-    sum
 }
 
 /// 1/(2n+1), and n/(2n+1) one place on.
@@ -60,7 +50,7 @@ const fn derivative<const N: usize, const M: usize>(c: &[f64; N]) -> [f64; M] {
 #[inline(always)]
 fn atanhc_value(x: f64) -> f64 {
     if x.abs() < 3e-3 {
-        head::<6>(x, &ATANHC)
+        polynomial(x, &ATANHC[..6])
     } else if x.abs() < 0.05 {
         polynomial(x, &ATANHC)
     } else if x > 0.0 {
@@ -77,7 +67,7 @@ fn atanhc_value(x: f64) -> f64 {
 pub(crate) fn expc<K: Kind>(x: Real<K>) -> Real<K> {
     let v = x.value();
     if v.abs() < 0.04 {
-        x.chain(head::<8>(v, &EXPC), head::<8>(v, &EXPC_SLOPE))
+        x.chain(polynomial(v, &EXPC[..8]), polynomial(v, &EXPC_SLOPE[..8]))
     } else if v.abs() < 0.1 {
         x.chain(polynomial(v, &EXPC), polynomial(v, &EXPC_SLOPE))
     } else {

@@ -66,21 +66,34 @@ impl<K: Kind> Force<K> {
 
     #[inline(always)]
     fn traverse_quadratic(&self, pace: Pace<K>, length: Real<K>) -> End<K> {
-        let (a, c, u) = (self.a, self.c, pace.u);
         if length.value() == f64::INFINITY {
-            return self.endless(u);
+            return self.endless(pace.u);
         }
+        match self.cross(pace, length) {
+            Some((arrival, after)) => End::Leaves { arrival, after },
+            None => self.stop(pace.u),
+        }
+    }
+
+    /// Crosses a finite stretch, b = 0: the arrival at its far border and the
+    /// time it takes; `None` where the mass stops on the way.
+    #[inline(always)]
+    pub(crate) fn cross(
+        &self,
+        pace: Pace<K>,
+        length: Real<K>,
+    ) -> Option<(Pace<K>, Real<K>)> {
+        let (a, c) = (self.a, self.c);
         let x = c * length * 2.0;
         let spread = expc(x) * length * 2.0;
         let decay = 1.0 - c * spread;
         let w = pace.w * decay + a * spread;
         if w.value() <= 0.0 {
-            return self.stop(u);
+            return None;
         }
-        let speed = w.sqrt();
-        let q = spread / (speed + u * decay);
-        let after = q * atanhc(a * c * q * q);
-        End::Leaves { arrival: Pace { u: speed, w }, after }
+        let u = w.sqrt();
+        let q = spread / (u + pace.u * decay);
+        Some((Pace { u, w }, q * atanhc(a * c * q * q)))
     }
 
     /// On a slope without end the mass stops or goes on for ever.

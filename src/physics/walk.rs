@@ -47,6 +47,14 @@ pub(crate) trait Walker<K: Kind> {
     fn ends(&self) -> f64;
     /// Goes on to the next leg.
     fn advance(&mut self) -> Result<(), Stop>;
+    /// Goes on to the leg that holds `time`.
+    #[inline(always)]
+    fn advance_to(&mut self, time: f64) -> Result<(), Stop> {
+        while self.ends() <= time {
+            self.advance()?;
+        }
+        Ok(())
+    }
     /// The speed at a time on the current leg.
     fn speed_at(&self, time: f64) -> Real<K>;
     /// The whole state there.
@@ -116,9 +124,7 @@ fn visit_times<K: Kind>(
     mut visit: impl FnMut(State<K>),
 ) -> Result<(), Stop> {
     for &time in times {
-        while walker.ends() <= time {
-            walker.advance()?;
-        }
+        walker.advance_to(time)?;
         visit(if speed_only {
             let speed = walker.speed_at(time);
             let zero = Real::new(0.0);
@@ -182,6 +188,8 @@ struct ExactWalker<'a, K: Kind, L> {
     law: &'a L,
     /// The law's rates, if they are the same everywhere.
     uniform: Option<Rate<K>>,
+    /// The same, if moreover a leg can only end at a border or at rest.
+    skims: Option<Rate<K>>,
     index: usize,
     /// How far into its piece the leg begins [m].
     within: Real<K>,
@@ -217,6 +225,10 @@ impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
             depth: path.depth,
             law,
             uniform,
+            skims: uniform.filter(|rate| {
+                rate.pressed.is_constantly_zero()
+                    && rate.linear.is_constantly_zero()
+            }),
             index,
             within,
             begins: zero,
@@ -313,10 +325,7 @@ impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
             End::Never => Real::new(f64::INFINITY),
         };
         self.ends = self.begins.value() + after.value();
-        if self.ends.is_nan() {
-            return Err(Stop::Reject("the motion is not a finite number"));
-        }
-        Ok(())
+        finite(self.ends)
     }
 
     #[cold]
@@ -332,6 +341,14 @@ impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
     fn place(&self) -> Real<K> {
         self.within + self.pieces[self.index].start
     }
+}
+
+#[inline(always)]
+fn finite(time: f64) -> Result<(), Stop> {
+    if time.is_nan() {
+        return Err(Stop::Reject("the motion is not a finite number"));
+    }
+    Ok(())
 }
 
 /// The speed at which a bend lifts the mass off the bed, where one does.
@@ -370,6 +387,19 @@ impl<K: Kind, L: Friction<K>> Walker<K> for ExactWalker<'_, K, L> {
     }
 
     #[inline(always)]
+    fn advance_to(&mut self, time: f64) -> Result<(), Stop> {
+        while self.ends <= time {
+            match (self.skims, self.end) {
+                (Some(rate), End::Leaves { arrival, after }) => {
+                    self.skim(time, &rate, arrival, after)?;
+                }
+                _ => self.advance()?,
+            }
+        }
+        Ok(())
+    }
+
+    #[inline(always)]
     fn speed_at(&self, time: f64) -> Real<K> {
         self.force.speed_after(self.pace.u, time - self.begins)
     }
@@ -393,6 +423,57 @@ impl<K: Kind, L: Friction<K>> Walker<K> for ExactWalker<'_, K, L> {
 }
 
 impl<K: Kind, L: Friction<K>> ExactWalker<'_, K, L> {
+    /// Crosses whole pieces until one holds `time` or something else than a
+    /// border ends the leg. This is the loop that a simulation spends its
+    /// time in: its state stays in registers.
+    #[inline(always)]
+    fn skim(
+        &mut self,
+        time: f64,
+        rate: &Rate<K>,
+        arrival: Pace<K>,
+        after: Real<K>,
+    ) -> Result<(), Stop> {
+        let (mut pace, mut begins) = (arrival, self.begins + after);
+        let c = rate.quadratic + rate.growth;
+        let b = Real::new(0.0);
+        let last = self.pieces.len() - 1;
+        self.within = Real::new(0.0);
+        for index in self.index + 1..last {
+            let piece = &self.pieces[index];
+            let a = piece.pull - rate.mu * piece.load - rate.constant;
+            let crossed =
+                Force { a, b, c }.cross(pace, Real::new(piece.length));
+            let Some((arrival, after)) = crossed else {
+                return self.land(index, pace, begins);
+            };
+            let ends = begins.value() + after.value();
+            if !(ends <= time) {
+                self.force = Force { a, b, c };
+                (self.index, self.pace, self.begins) = (index, pace, begins);
+                self.length = Real::new(piece.length);
+                self.end = End::Leaves { arrival, after };
+                self.ends = ends;
+                return finite(ends);
+            }
+            begins += after;
+            pace = arrival;
+        }
+        self.land(last, pace, begins)
+    }
+
+    /// Enters a piece in the general way.
+    #[cold]
+    fn land(
+        &mut self,
+        index: usize,
+        pace: Pace<K>,
+        begins: Real<K>,
+    ) -> Result<(), Stop> {
+        (self.index, self.pace, self.begins) = (index, pace, begins);
+        self.enter_piece()
+    }
+
     /// Goes on within a piece, the load now on or off.
     #[cold]
     fn cross(&mut self) -> Result<(), Stop> {

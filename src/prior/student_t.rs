@@ -109,7 +109,7 @@ fn ln_factor<K: Kind>(n: Real<K>) -> Real<K> {
     let r = 2.0 / n;
     const SERIES: [f64; 4] =
         [-1.0 / 8.0, 1.0 / 192.0, -1.0 / 640.0, 17.0 / 14336.0];
-    r * polynomial(r * r, &SERIES) - LN_SQRT_2PI
+    r * (r * r).polynomial(&SERIES) - LN_SQRT_2PI
 }
 
 /// The quantile of location 0 and scale 1.

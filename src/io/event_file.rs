@@ -1,0 +1,339 @@
+//! Event files: what somebody measured and the model to fit, read from
+//! `event.toml` and the data files beside it.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use super::csv_file::{read_recording, read_track};
+use super::document::{Document, Section};
+use super::source;
+use super::words::{either, nearest, place, quoted};
+use crate::error::{Error, Result, Stop};
+use crate::noise::{self, Grid, NoiseEntry, NoiseFor};
+use crate::observe::{Event, Quantity};
+use crate::physics::Track;
+use crate::physics::friction::{LawSum, Laws};
+use crate::prior::AnyPrior;
+use crate::scalar::{Plain, Real};
+
+/// The most bytes that an event.toml may have.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// An event with the model that its file asks for.
+///
+/// What a file leaves out is: `track.origin` 0, `release.x` the track's first
+/// point, `release.velocity` 0, `flow.depth` 1 m (then xi stands for the
+/// product xi h), `recording.window` 0, `model.friction` "voellmy",
+/// `model.noise` "iid", and the blocks' own priors.
+#[derive(Debug)]
+pub struct EventFile {
+    /// The terrain, the start, and what was recorded.
+    pub event: Event,
+    /// The friction law.
+    pub friction: LawSum,
+    /// The noise.
+    pub noise: Box<dyn NoiseEntry>,
+    /// Priors by the names of their parameters; whether the model has such
+    /// parameters is not checked here.
+    pub priors: BTreeMap<String, AnyPrior>,
+    /// Terms that a diagnosis added; empty in this version.
+    pub mechanisms: Vec<String>,
+    /// The event.toml, as the user gave it.
+    pub path: PathBuf,
+}
+
+/// Loads an event from its folder or its event.toml.
+///
+/// # Errors
+/// An input error for anything in the files that is not as it should be; its
+/// message is one line that names the file, the line or key, what was found,
+/// what was expected, and the mend.
+pub fn load(path: &Path, laws: &Laws) -> Result<EventFile> {
+    let file = find(path)?;
+    let text = source::read_text(&file, MOST_BYTES)?;
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let open = |name: &str| {
+        let path = folder.join(name);
+        let file = source::open(&path)?;
+        Ok((file, path))
+    };
+    parse_event::<File>(&text, &file, open, laws)
+}
+
+/// The event.toml that a path given by the user means.
+fn find(path: &Path) -> Result<PathBuf> {
+    let called = place(path);
+    if !path.exists() {
+        return Err(Error::input(format!(
+            "{called}: does not exist; expected an event folder or its \
+             event.toml: check the path, or write one with `couloir new \
+             FOLDER`"
+        )));
+    }
+    if path.is_dir() {
+        let file = path.join("event.toml");
+        if !file.exists() {
+            return Err(Error::input(format!(
+                "{called}: has no event.toml in it; expected an event \
+                 folder: check the path, or write one with `couloir new \
+                 FOLDER`"
+            )));
+        }
+        return Ok(file);
+    }
+    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
+        return Err(Error::input(format!(
+            "{called}: is a data file; expected an event folder or its \
+             event.toml: give the one that names this file"
+        )));
+    }
+    Ok(path.to_owned())
+}
+
+/// Reads the text of an event.toml. `path` is what messages call it; `open`
+/// gives the source of a data file by the name in the text, and what messages
+/// call that source.
+///
+/// # Errors
+/// As in [`load`], and those of `open`.
+pub fn parse_event<R: Read>(
+    text: &str,
+    path: &Path,
+    open: impl Fn(&str) -> Result<(R, PathBuf)>,
+    laws: &Laws,
+) -> Result<EventFile> {
+    let document = Document::parse(text, path)?;
+    let top = document.top();
+    top.only(&[
+        "name",
+        "track",
+        "release",
+        "flow",
+        "recording",
+        "model",
+        "priors",
+    ])?;
+    let model = Model::read(&top, laws)?;
+    let priors = read_priors(&top.section("priors")?)?;
+    let event = read_event(&top, &open)?;
+    for series in event.recordings() {
+        check_noise(model.noise.as_ref(), series.grid())
+            .map_err(|error| model.section.about("noise", error))?;
+    }
+    let Model { friction, noise, mechanisms, .. } = model;
+    let path = path.to_owned();
+    Ok(EventFile { event, friction, noise, priors, mechanisms, path })
+}
+
+type Open<'o, R> = &'o dyn Fn(&str) -> Result<(R, PathBuf)>;
+
+fn read_event<R: Read>(top: &Section, open: Open<R>) -> Result<Event> {
+    let still = at_rest(top, read_track_section(top, open)?)?;
+    let recording = top.section("recording")?;
+    recording.only(&["file", "quantity", "window"])?;
+    let quantity = read_quantity(&recording)?;
+    let Some(file) = recording.text("file")? else {
+        return Err(recording.missing("file", "file = \"recording.csv\""));
+    };
+    let (source, path) =
+        open(file).map_err(|error| recording.about("file", error))?;
+    let window = recording.number("window")?.unwrap_or(0.0);
+    let series = read_recording(source, quantity, &path)?
+        .with_window(window)
+        .map_err(|error| recording.about("window", error))?;
+    still
+        .with_recording(series)
+        .map_err(|error| recording.about("file", error.within(place(&path))))
+}
+
+fn read_quantity(recording: &Section) -> Result<Quantity> {
+    let names = Quantity::ALL.map(Quantity::name);
+    let Some(found) = recording.text("quantity")? else {
+        let mend = format!("quantity = {}", either(&names));
+        return Err(recording.missing("quantity", &mend));
+    };
+    let known = Quantity::ALL.into_iter().find(|q| q.name() == found);
+    known.ok_or_else(|| {
+        let mend = match nearest(found, &names) {
+            Some(name) => format!("; did you mean {name:?}?"),
+            None => ": convert the recording to one of them".to_owned(),
+        };
+        let expected = either(&names);
+        recording.at(
+            "quantity",
+            format!("is {}; expected {expected}{mend}", quoted(found)),
+        )
+    })
+}
+
+/// The track, from its file or as a constant slope.
+fn read_track_section<R: Read>(top: &Section, open: Open<R>) -> Result<Track> {
+    let section = top.section("track")?;
+    section.only(&["file", "slope", "length", "origin"])?;
+    let origin = section.number("origin")?.unwrap_or(0.0);
+    let slope = section.number("slope")?;
+    let length = section.number("length")?;
+    let track = match (section.text("file")?, slope, length) {
+        (Some(file), None, None) => {
+            let (source, path) =
+                open(file).map_err(|error| section.about("file", error))?;
+            read_track(source, &path)?
+        }
+        (None, Some(slope), Some(length)) => incline(&section, slope, length)?,
+        (Some(_), ..) => {
+            return Err(section.at(
+                "file",
+                "stands beside track.slope or track.length; expected the one \
+                 or the others: drop file, or slope and length",
+            ));
+        }
+        (None, Some(_), None) => {
+            return Err(section.missing("length", "length = METRES"));
+        }
+        (None, None, Some(_)) => {
+            return Err(section.missing("slope", "slope = DEGREES"));
+        }
+        (None, None, None) => {
+            return Err(section.missing(
+                "file",
+                "file = \"track.csv\", or slope = DEGREES and length = METRES",
+            ));
+        }
+    };
+    Ok(track.with_origin(origin))
+}
+
+fn incline(section: &Section, slope: f64, length: f64) -> Result<Track> {
+    // Each on its own, so that an error names the right key.
+    Track::incline(slope, 1.0)
+        .map_err(|error| section.about("slope", error))?;
+    Track::incline(slope, length)
+        .map_err(|error| section.about("length", error))
+}
+
+/// The event before anything was recorded.
+fn at_rest(top: &Section, track: Track) -> Result<Event> {
+    let (release, flow) = (top.section("release")?, top.section("flow")?);
+    release.only(&["x", "velocity"])?;
+    flow.only(&["depth"])?;
+    let depth = flow.number("depth")?.unwrap_or(1.0);
+    if depth <= 0.0 {
+        return Err(flow.at(
+            "depth",
+            format!("is {depth}; expected metres, more than 0"),
+        ));
+    }
+    let velocity = release.number("velocity")?.unwrap_or(0.0);
+    if velocity < 0.0 {
+        return Err(release.at(
+            "velocity",
+            format!("is {velocity}; expected m/s down the track, 0 or more"),
+        ));
+    }
+    let x = release.number("x")?.unwrap_or(track.points().0[0]);
+    track.distance_at(x).map_err(|error| release.about("x", error))?;
+    let name = top.text("name")?.unwrap_or("event");
+    Event::on(track)
+        .named(name)
+        .release(x, velocity)
+        .depth(depth)
+        .build()
+        .map_err(|error| release.about("x", error))
+}
+
+/// The section `[model]`.
+struct Model<'d> {
+    section: Section<'d>,
+    friction: LawSum,
+    noise: Box<dyn NoiseEntry>,
+    mechanisms: Vec<String>,
+}
+
+impl<'d> Model<'d> {
+    fn read(top: &Section<'d>, laws: &Laws) -> Result<Self> {
+        let section = top.section("model")?;
+        section.only(&["friction", "noise", "mechanisms"])?;
+        let text = section.text("friction")?.unwrap_or("voellmy");
+        let friction = laws
+            .parse(text)
+            .and_then(once_each)
+            .map_err(|error| section.about("friction", error))?;
+        let noise = noise::parse(section.text("noise")?.unwrap_or("iid"))
+            .map_err(|error| section.about("noise", error))?;
+        let mechanisms = read_mechanisms(&section)?;
+        Ok(Self { section, friction, noise, mechanisms })
+    }
+}
+
+/// Refuses a sum in which a law stands twice: its parameters would have the
+/// same names.
+fn once_each(friction: LawSum) -> Result<LawSum> {
+    let names: Vec<_> = friction.terms().iter().map(|t| t.name()).collect();
+    let twice =
+        names.iter().enumerate().find(|(i, name)| names[..*i].contains(name));
+    match twice {
+        None => Ok(friction),
+        Some((_, name)) => Err(Error::input(format!(
+            "the sum \"{friction}\" has {name:?} twice; expected each law \
+             once: drop one of them"
+        ))),
+    }
+}
+
+/// The terms that a diagnosis added. This version has none to offer, and to
+/// fit the model without them would answer another question.
+fn read_mechanisms(model: &Section) -> Result<Vec<String>> {
+    let found = model.texts("mechanisms")?;
+    match found.first() {
+        None => Ok(Vec::new()),
+        Some(name) => Err(model.at(
+            "mechanisms",
+            format!(
+                "has {}; terms of a diagnosis are not in this version: drop \
+                 the key",
+                quoted(name)
+            ),
+        )),
+    }
+}
+
+/// Priors by parameter. A name of two parts, such as `coulomb.mu`, may stand
+/// bare or in quotes.
+fn read_priors(section: &Section) -> Result<BTreeMap<String, AnyPrior>> {
+    let mut priors = BTreeMap::new();
+    for key in section.keys() {
+        if !section.is_section(key) {
+            priors.insert(key.to_owned(), read_prior(section, key)?);
+            continue;
+        }
+        let block = section.section(key)?;
+        for field in block.keys() {
+            let prior = read_prior(&block, field)?;
+            priors.insert(format!("{key}.{field}"), prior);
+        }
+    }
+    Ok(priors)
+}
+
+fn read_prior(section: &Section, key: &str) -> Result<AnyPrior> {
+    let expected = "a distribution in quotes, such as \"Gamma(9, 0.03)\"";
+    let text = section.text_as(key, expected)?.unwrap_or("");
+    AnyPrior::parse(text).map_err(|error| section.about(key, error))
+}
+
+/// Whether a noise is defined at the times of a recording. That hangs on how
+/// many parameters it has, not on their values.
+fn check_noise(noise: &dyn NoiseEntry, grid: &Grid) -> Result<()> {
+    let values = vec![Real::<Plain>::new(0.1); noise.parameters().len()];
+    let mut answer = Ok(());
+    let asked = NoiseFor::<Plain>::with(noise, &values, &mut |noise| {
+        answer = noise.check(grid);
+    });
+    match asked {
+        Ok(()) => answer,
+        Err(Stop::Fail(error)) => Err(error),
+        Err(Stop::Reject(why)) => Err(Error::input(why)),
+    }
+}

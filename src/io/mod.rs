@@ -1,0 +1,21 @@
+//! Files: events that are read, folders that are written.
+//!
+//! Everything a person wrote comes in here, so everything that can be wrong
+//! with it is said here: each message is one line that names the file, the
+//! line or key, what was found, what was expected, and the mend.
+
+mod csv_file;
+mod document;
+mod embedded;
+mod event_file;
+mod lines;
+mod source;
+mod template;
+mod words;
+mod write;
+
+pub use csv_file::{MOST_ROWS, read_recording, read_track};
+pub use embedded::coastdown;
+pub use event_file::{EventFile, load, parse_event};
+pub use template::new_event;
+pub use write::write_all;

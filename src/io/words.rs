@@ -1,0 +1,108 @@
+//! Words of messages: foreign text made safe to print, and names that a
+//! misspelt one may have meant.
+
+use std::path::Path;
+
+/// The longest piece of foreign text in a message, in characters.
+const LONGEST: usize = 60;
+
+/// The largest number, either way, that a file may give: further from
+/// anything that slides than any slip of units, and safe to square.
+pub(super) const LARGEST: f64 = 1e9;
+
+/// Foreign text in quotes, its control characters escaped and its end cut.
+pub(super) fn quoted(text: &str) -> String {
+    match text.char_indices().nth(LONGEST) {
+        None => format!("{text:?}"),
+        Some((end, _)) => format!("{:?}...", &text[..end]),
+    }
+}
+
+/// Whether a character would break or turn a line of a message: controls,
+/// line separators, and marks without a width or of a writing direction.
+pub(super) fn breaks_line(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
+            | '\u{2060}'..='\u{2069}' | '\u{feff}')
+}
+
+/// A path as the user gave it, unless that would break the line.
+pub(super) fn place(path: &Path) -> String {
+    let text = path.display().to_string();
+    if text.chars().any(breaks_line) { format!("{text:?}") } else { text }
+}
+
+/// The names in quotes: "a", "b" or "c".
+pub(super) fn either(names: &[&str]) -> String {
+    let quoted: Vec<_> = names.iter().map(|n| format!("{n:?}")).collect();
+    match quoted.split_last() {
+        None => "nothing".to_owned(),
+        Some((last, [])) => last.clone(),
+        Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
+    }
+}
+
+/// The name that a misspelt one is closest to, if any is close.
+pub(super) fn nearest<'n>(found: &str, known: &[&'n str]) -> Option<&'n str> {
+    if found.len() > LONGEST {
+        return None;
+    }
+    known
+        .iter()
+        .map(|name| (edits(&found.to_lowercase(), name), *name))
+        .min()
+        .filter(|(edits, name)| *edits <= 1 + name.len() / 3)
+        .map(|(_, name)| name)
+}
+
+/// How many letters to insert, delete or change between two words
+/// (Levenshtein's distance).
+fn edits(from: &str, to: &str) -> usize {
+    let to: Vec<char> = to.chars().collect();
+    let mut row: Vec<usize> = (0..=to.len()).collect();
+    for (i, a) in from.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, b) in to.iter().enumerate() {
+            let changed = diagonal + usize::from(a != *b);
+            diagonal = row[j + 1];
+            row[j + 1] = changed.min(1 + diagonal.min(row[j]));
+        }
+    }
+    row[to.len()]
+}
+
+/// A number, if it is one that couloir can take; otherwise what is wrong
+/// with it.
+pub(super) fn admissible(value: f64) -> Result<f64, String> {
+    if value.abs() <= LARGEST {
+        return Ok(value);
+    }
+    Err(format!(
+        "is {value:?}; expected a finite number in SI units, from -{LARGEST:e} \
+         to {LARGEST:e}"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn foreign_text_stays_on_one_line_and_short() {
+        assert_eq!(quoted("a\nb\u{1b}[2J"), r#""a\nb\u{1b}[2J""#);
+        let long = quoted(&"é".repeat(500));
+        assert_eq!(long.chars().count(), LONGEST + 5);
+        assert_eq!(place(Path::new("a/b c")), "a/b c");
+        assert_eq!(place(Path::new("a\nb")), r#""a\nb""#);
+    }
+
+    #[test]
+    fn a_misspelt_name_finds_the_one_meant() {
+        let known = ["depth", "file", "quantity"];
+        assert_eq!(nearest("depht", &known), Some("depth"));
+        assert_eq!(nearest("Quantity", &known), Some("quantity"));
+        assert_eq!(nearest("banana", &known), None);
+        assert_eq!(either(&["a", "b", "c"]), r#""a", "b" or "c""#);
+    }
+}

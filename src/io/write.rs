@@ -1,0 +1,119 @@
+//! Writing a folder of files so that none is ever half written.
+
+use std::fs::{self, File};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use super::words::place;
+use crate::error::{Error, Result};
+
+/// A file under its temporary name, removed unless it gets its own.
+#[derive(Debug)]
+struct Draft {
+    temporary: PathBuf,
+    target: PathBuf,
+}
+
+impl Drop for Draft {
+    fn drop(&mut self) {
+        // After the renaming there is nothing to remove, and before it
+        // another error is under way already.
+        let _ = fs::remove_file(&self.temporary);
+    }
+}
+
+/// Writes files, by name, into a folder, which is created where it is not
+/// there. Each is written under another name first and renamed once all are
+/// complete; files of the same names are replaced, others stay.
+///
+/// # Errors
+/// A system error that names the file and the machine's reason. Files whose
+/// turn to be renamed had not come are then left as they were.
+pub fn write_all(folder: &Path, files: &[(&str, String)]) -> Result<()> {
+    fs::create_dir_all(folder).map_err(|error| {
+        failed(folder, "the folder could not be created", &error)
+    })?;
+    let drafts: Vec<Draft> = files
+        .iter()
+        .map(|(name, text)| draft(folder, name, text))
+        .collect::<Result<_>>()?;
+    for Draft { temporary, target } in &drafts {
+        fs::rename(temporary, target).map_err(|error| {
+            failed(target, "the file could not be put in place", &error)
+        })?;
+    }
+    Ok(())
+}
+
+fn draft(folder: &Path, name: &str, text: &str) -> Result<Draft> {
+    let hidden = format!(".{name}.{}.tmp", std::process::id());
+    let draft =
+        Draft { temporary: folder.join(hidden), target: folder.join(name) };
+    let written = File::create(&draft.temporary).and_then(|mut file| {
+        file.write_all(text.as_bytes())?;
+        file.sync_all()
+    });
+    match written {
+        Ok(()) => Ok(draft),
+        Err(error) => {
+            Err(failed(&draft.target, "the file could not be written", &error))
+        }
+    }
+}
+
+fn failed(path: &Path, what: &str, error: &std::io::Error) -> Error {
+    Error::system(format!("{}: {what}: {error}", place(path)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<_> = fs::read_dir(folder)
+            .unwrap()
+            .map(|e| e.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    fn fresh(name: &str) -> PathBuf {
+        let id = std::process::id();
+        let folder =
+            std::env::temp_dir().join(format!("couloir-write-{name}-{id}"));
+        let _ = fs::remove_dir_all(&folder);
+        folder
+    }
+
+    #[test]
+    fn files_are_written_and_others_stay() {
+        let folder = fresh("stay").join("deep/er");
+        write_all(&folder, &[("a", "1".into()), ("b", "2".into())]).unwrap();
+        write_all(&folder, &[("a", "3".into())]).unwrap();
+        assert_eq!(names(&folder), ["a", "b"]);
+        assert_eq!(fs::read_to_string(folder.join("a")).unwrap(), "3");
+        fs::remove_dir_all(fresh("stay")).unwrap_or_default();
+    }
+
+    #[test]
+    fn an_error_leaves_no_temporaries() {
+        let folder = fresh("error");
+        fs::create_dir_all(folder.join("b")).unwrap();
+        let files = [("b", "2".into()), ("a", "1".into())];
+        let error = write_all(&folder, &files).unwrap_err();
+        assert!(!error.is_input() && !error.is_inference());
+        assert!(error.to_string().contains("b: the file could not be put"));
+        assert_eq!(names(&folder), ["b"]);
+        fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn a_file_in_the_way_is_an_error() {
+        let folder = fresh("way");
+        fs::write(&folder, "x").unwrap();
+        assert!(write_all(&folder, &[("a", "1".into())]).is_err());
+        assert_eq!(fs::read_to_string(&folder).unwrap(), "x");
+        fs::remove_file(&folder).unwrap();
+    }
+}
