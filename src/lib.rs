@@ -18,6 +18,7 @@ pub mod report;
 pub mod scalar;
 pub mod seed;
 
+pub use couloir_macros::model;
 pub use declared::Declared;
 pub use error::{Error, Outcome, Result, Stop};
 pub use model::{Label, Model, Number, Program, Run};

@@ -1,1 +1,154 @@
 //! The `model!` macro of couloir.
+//!
+//! Tokens become a tree (`split`, `parse`, `body`), the tree is checked
+//! (`check`, `label`), and only a tree without errors is written out as a
+//! program (`expand`). Whatever is wrong is collected on the way and reported
+//! at once, each mistake on the user's own token.
+
+mod body;
+mod check;
+mod distribution;
+mod errors;
+mod expand;
+mod label;
+mod parse;
+mod split;
+mod tokens;
+mod tree;
+
+use errors::Errors;
+
+/// Writes a model: its data, its unknowns, and how the data come about.
+///
+/// ```
+/// use couloir::noise::Ar;
+/// use couloir::physics::{Track, friction::Voellmy};
+/// use couloir::model::Point;
+/// use couloir::{Event, Model, Series, model};
+///
+/// model! {
+///     /// Voellmy friction with errors correlated along the flow.
+///     pub struct Calibration { event: Event }
+///
+///     friction ~ Voellmy { mu: Gamma(9.0, 0.03), xi: Gamma(2.5, 400.0) };
+///     errors   ~ Ar { phi: [Uniform(-1.0, 1.0)], sigma2: InverseGamma(3.0, 20.0) };
+///
+///     likelihood {
+///         let flow = event.slide(&friction)?;
+///         event.velocity ~ flow.velocity() + errors;
+///     }
+/// }
+///
+/// # fn main() -> couloir::Result<()> {
+/// let event = Event::on(Track::incline(35.0, 500.0)?)
+///     .velocity(Series::velocity(vec![1.0, 2.0], vec![2.9, 5.6])?)
+///     .build()?;
+/// let model = Calibration::new(event);
+/// // mu, xi, phi, sigma2
+/// let density = model.evaluate(Point::Natural(&[0.3, 1000.0, 0.5, 0.1]), None)?;
+/// assert!(density.natural().is_finite());
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # The struct
+///
+/// It holds the data and comes first: any fields with any visibility and
+/// attributes, no generics. The macro adds `new`, which takes the fields in
+/// the order written and is as visible as the struct, and `impl Program`, from
+/// which `Model` follows. Below, every field is in scope under its name: a
+/// number, `bool` or reference by value, anything else by reference.
+///
+/// # Declarations
+///
+/// Each ends with `;` and may use the fields and what stands above it; a
+/// comment `///` may precede it.
+///
+/// | written | declares |
+/// |---|---|
+/// | `centre ~ Normal(0.3, 0.1);` | an unknown |
+/// | `z[n] ~ Normal(0.0, 1.0);` | a vector of `n` of them, any expression of type `usize` |
+/// | `y[i in 0..n] ~ Normal(z[i], 1.0);` | one for each index, each with its own prior |
+/// | `friction ~ Voellmy { mu: Gamma(9.0, 0.03), xi = drag };` | a block: `:` gives an unknown its prior, `=` a known or shared value |
+/// | `errors ~ Ar { phi: [Uniform(-1.0, 1.0); 2], sigma2: .. };` | a list: `[prior, prior]` or `[prior; count]`, known values `= [a, b]` |
+/// | `friction ~ Coulomb { .. } + Turbulent { .. };` | blocks that add up |
+/// | `friction[i in 0..n] ~ Coulomb { mu = centre + spread * z[i] };` | a block for each index, in a list |
+/// | `let scale = 2.0 * centre;` | nothing: an ordinary `let` |
+///
+/// An unknown of a block is called as its field is (`mu`) while that is
+/// unique in the model, else by its block (`friction.mu`), and where terms of
+/// one sum share a field by the type of the block (`coulomb.mu`). Those of
+/// vectors, lists and indexed blocks carry an index; a list of one does not.
+///
+/// A block is any struct with one type parameter, its number, that implements
+/// `Block`; a law or noise of one's own is used exactly as the built-in ones.
+///
+/// # Distributions
+///
+/// `Normal(mean, sd)`, `LogNormal(mean, sd)` of ln x, `Gamma(shape, scale)`,
+/// `InverseGamma(shape, scale)`, `Exponential(mean)`, `Uniform(low, high)`,
+/// `Beta(a, b)`, `HalfNormal(scale)`, `HalfCauchy(scale)`,
+/// `Cauchy(location, scale)`, `StudentT(freedom, location, scale)`, `Flat()`.
+/// They need no import. A path is a `Prior` of one's own: `my::Prior(a)`, or
+/// `self::Prior(a)`, calls its `new(a)`.
+///
+/// # The likelihood
+///
+/// Ordinary Rust, with `~` lines anywhere among its statements (also in
+/// `for`, `if`, `while`, `match`) that add up:
+///
+/// - `data ~ prediction + noise;` scores a series; the noise is the last
+///   summand and was declared above.
+/// - `data ~ Distribution(..);` scores a number, or each of several.
+///
+/// `?` ends the run where there is no flow. Numbers are `Real`s that carry
+/// derivatives: literals and comparisons work as usual. What the macro makes
+/// is hygienic, so `run` and `K` may be names of one's own.
+///
+/// # Mistakes
+///
+/// | mistake | mend |
+/// |---|---|
+/// | `x = Normal(..);`, `x: Normal(..);` | `x ~ Normal(..);` |
+/// | `mu: 0.3` | `mu = 0.3`: a value takes `=` |
+/// | `mu = Gamma(9.0, 0.03)` | `mu: Gamma(9.0, 0.03)`: an unknown takes `:` |
+/// | `mu` alone in a block | `mu = mu` or `mu: prior` |
+/// | `Normal(0, 1)` | `Normal(0.0, 1.0)` |
+/// | `Gama(9.0, 0.03)`, `Gamma(9.0)`, `Gamma(-1.0, 2.0)` | as `Gamma(shape, scale)` says |
+/// | a name never used, declared twice, used above its line, or a field's | use it, rename it, move it |
+/// | `friction[n] ~ Coulomb { .. }` | `friction[i in 0..n] ~ Coulomb { .. }` |
+/// | `Coulomb { .. } + Normal(..)`, `Coulomb {}` | `+` adds blocks with fields |
+/// | a missing `;` or `,` | put it where the message points |
+/// | `data ~ flow.velocity();` | `.. + errors`, or a distribution |
+/// | `data ~ errors + flow.velocity();` | the noise comes last |
+/// | no struct, two, generic, without names | `pub struct Name { event: Event }` |
+/// | no likelihood, two, or one without `~` | `likelihood { data ~ prediction + noise; }` |
+///
+/// All of them are reported at once. What depends on types (a field that a
+/// block does not have, or lacks; a struct that is no block; data that are
+/// none) rustc reports, on the same tokens.
+#[proc_macro]
+pub fn model(input: proc_macro::TokenStream) -> proc_macro::TokenStream {
+    expand(input.into()).into()
+}
+
+/// Tokens to tree, all errors, tree to tokens.
+fn expand(input: proc_macro2::TokenStream) -> proc_macro2::TokenStream {
+    let fresh = expand::Fresh::new(input.clone());
+    let (source, errors) = understand(input);
+    let mut tokens = expand::source(&source, &fresh, !errors.is_empty());
+    tokens.extend(errors.into_tokens());
+    tokens
+}
+
+/// The model as a tree, and everything that is wrong with it.
+fn understand(input: proc_macro2::TokenStream) -> (tree::Source, Errors) {
+    let mut errors = Errors::default();
+    let mut source = parse::source(input, &mut errors);
+    check::source(&source, &mut errors);
+    label::assign(&mut source, &mut errors);
+    (source, errors)
+}
+
+#[cfg(test)]
+mod tests;

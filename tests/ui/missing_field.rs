@@ -1,0 +1,17 @@
+//! rustc: a field of the block that is not given.
+use couloir::noise::Iid;
+use couloir::physics::friction::Voellmy;
+use couloir::{Event, model};
+
+model! {
+    pub struct Calibration { event: Event }
+
+    friction ~ Voellmy { mu: Gamma(9.0, 0.03) };
+    errors ~ Iid { sigma2: InverseGamma(3.0, 20.0) };
+    likelihood {
+        let flow = event.slide(&friction)?;
+        event.velocity ~ flow.velocity() + errors;
+    }
+}
+
+fn main() {}

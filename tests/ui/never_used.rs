@@ -1,0 +1,19 @@
+//! A parameter and a block that nothing uses.
+use couloir::noise::Iid;
+use couloir::physics::friction::{Coulomb, Turbulent};
+use couloir::{Event, model};
+
+model! {
+    pub struct Calibration { event: Event }
+
+    centre ~ Normal(0.3, 0.1);
+    drag ~ Turbulent { xi: Gamma(2.5, 400.0) };
+    friction ~ Coulomb { mu: Gamma(9.0, 0.03) };
+    errors ~ Iid { sigma2: InverseGamma(3.0, 20.0) };
+    likelihood {
+        let flow = event.slide(&friction)?;
+        event.velocity ~ flow.velocity() + errors;
+    }
+}
+
+fn main() {}

@@ -1,0 +1,13 @@
+//! A model that ends too early.
+use couloir::noise::Iid;
+use couloir::physics::friction::Coulomb;
+use couloir::{Event, model};
+
+model! {
+    pub struct Calibration { event: Event }
+
+    friction ~ Coulomb { mu: Gamma(9.0, 0.03) };
+    errors ~ Iid { sigma2: InverseGamma(3.0, 20.0) };
+}
+
+fn main() {}

@@ -1,0 +1,18 @@
+//! rustc: what stands left of `~` was not recorded.
+use couloir::noise::Iid;
+use couloir::physics::friction::Coulomb;
+use couloir::{Event, model};
+
+model! {
+    pub struct Calibration { event: Event }
+
+    friction ~ Coulomb { mu: Gamma(9.0, 0.03) };
+    errors ~ Iid { sigma2: InverseGamma(3.0, 20.0) };
+    likelihood {
+        let flow = event.slide(&friction)?;
+        event ~ flow.velocity() + errors;
+        flow.runout()? ~ Normal(0.0, 1.0);
+    }
+}
+
+fn main() {}

@@ -1,0 +1,19 @@
+//! A model inside a function, with everything by its path and all warnings
+//! denied.
+#![deny(warnings)]
+
+fn main() {
+    couloir::model! {
+        #[derive(Debug, Clone)]
+        struct Local { event: couloir::Event, }
+
+        friction ~ couloir::physics::friction::Coulomb { mu: Flat(), };
+        errors ~ couloir::noise::Iid { sigma2: HalfCauchy(1.0) };
+
+        likelihood {
+            let flow = event.slide(&friction)?;
+            event.velocity ~ flow.velocity() + errors;
+        }
+    }
+    let _ = Local::new;
+}

@@ -1,0 +1,62 @@
+//! The user's own `K`, `S`, `Block0`, `run`, `all`, `one` and `value_0_0` are
+//! not the macro's.
+#![deny(warnings)]
+use couloir::model;
+use own::S;
+
+mod own {
+    use couloir::Real;
+    use couloir::scalar::Kind;
+    use couloir::physics::friction::{Friction, Rate, Site, Varies};
+
+    pub struct S<N> {
+        pub mu: N,
+    }
+
+    impl<K: Kind> Friction<K> for S<Real<K>> {
+        fn varies(&self) -> Varies {
+            Varies::Nowhere
+        }
+        fn rate(&self, _: &Site, _: Real<K>) -> Rate<K> {
+            Rate { mu: self.mu, ..Rate::default() }
+        }
+    }
+
+    pub struct K(pub f64);
+        pub struct Block0(pub f64);
+}
+
+fn run(x: f64) -> f64 {
+    x
+}
+
+model! {
+    struct Names {
+        run: f64,
+        event: couloir::Event,
+        data: Vec<f64>,
+        count: usize,
+        text: &'static str,
+    }
+
+    all ~ Normal(run, 1.0);
+    one ~ Normal(0.0, 1.0);
+    let value_0_0 = all + one;
+    r#type[all in 0..count] ~ couloir::noise::Iid { sigma2: Gamma(2.0, value_0_0.exp()) };
+    law ~ S { mu = value_0_0 } + S { mu = 0.1 };
+
+    likelihood {
+        use own::{Block0, K};
+        let at = K(1.0).0 + Block0(3.0).0 + text.len() as f64;
+        for (y, errors) in data.iter().zip(&r#type) {
+            y ~ Normal(at * errors.sigma2, 1.0);
+        }
+        let flow = event.slide(&law)?;
+        event.velocity ~ flow.velocity() + r#type[0];
+        self::run(1.0) ~ Normal(0.0, 1.0);
+    }
+}
+
+fn main() {
+    let _ = Names::new;
+}

@@ -1,0 +1,17 @@
+//! rustc: a block that does not exist.
+use couloir::noise::Iid;
+use couloir::physics::friction::Coulomb;
+use couloir::{Event, model};
+
+model! {
+    pub struct Calibration { event: Event }
+
+    friction ~ Colomb { mu: Gamma(9.0, 0.03) };
+    errors ~ Iid { sigma2: InverseGamma(3.0, 20.0) };
+    likelihood {
+        let flow = event.slide(&friction)?;
+        event.velocity ~ flow.velocity() + errors;
+    }
+}
+
+fn main() {}
