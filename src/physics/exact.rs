@@ -48,7 +48,7 @@ pub(crate) enum End<K: Kind> {
     Never,
 }
 
-/// 2 c l above which a stretch is crossed by [`Force::cross_far`].
+/// 2 c l above which a stretch is left to [`Force::cross_far`].
 const FAR: f64 = 2.0;
 
 impl<K: Kind> Force<K> {
@@ -76,14 +76,13 @@ impl<K: Kind> Force<K> {
         }
         match self.cross(pace, length) {
             Some((arrival, after)) => End::Leaves { arrival, after },
-            // Too slow for a number, yet nothing stops it.
-            None if self.a >= 0.0 => End::Never,
-            None => self.stop(pace.u),
+            None => self.end_otherwise(pace, length),
         }
     }
 
     /// Crosses a finite stretch, b = 0: the arrival at its far border and the
-    /// time it takes; `None` where the mass stops on the way.
+    /// time it takes; `None` where the mass stops on the way, or the stretch
+    /// is long (see [`Force::cross_far`]).
     #[inline(always)]
     pub(crate) fn cross(
         &self,
@@ -92,13 +91,10 @@ impl<K: Kind> Force<K> {
     ) -> Option<(Pace<K>, Real<K>)> {
         let (a, c) = (self.a, self.c);
         let x = c * length * 2.0;
-        if x.value().abs() > FAR {
-            return self.cross_far(pace, length);
-        }
         let spread = expc(x) * length * 2.0;
         let decay = 1.0 - c * spread;
         let w = pace.w * decay + a * spread;
-        if w.value() <= 0.0 {
+        if w.value() <= 0.0 || x.value().abs() > FAR {
             return None;
         }
         let u = w.sqrt();
@@ -106,11 +102,21 @@ impl<K: Kind> Force<K> {
         Some((Pace { u, w }, q * atanhc(a * c * q * q)))
     }
 
+    #[inline(never)]
+    fn end_otherwise(&self, pace: Pace<K>, length: Real<K>) -> End<K> {
+        if (self.c * length).value().abs() > 0.5 * FAR
+            && let Some((arrival, after)) = self.cross_far(pace, length)
+        {
+            return End::Leaves { arrival, after };
+        }
+        // Without a brake it is only too slow for a number.
+        if self.a >= 0.0 { End::Never } else { self.stop(pace.u) }
+    }
+
     /// The same over so long a stretch that the speed forgets its beginning:
     /// e from its own exponential, since 1 - c E has lost its digits, and the
     /// time as (c l + ln((v + u1)/(v + u0)))/(c v), v = sqrt(a/c) the terminal
     /// speed, where z is too near 1 for atanh.
-    #[cold]
     fn cross_far(
         &self,
         pace: Pace<K>,
@@ -269,7 +275,7 @@ impl<K: Kind> Force<K> {
     }
 
     fn stop_riccati(&self, u: Real<K>) -> Option<End<K>> {
-        if !(self.a < 0.0) {
+        if self.a >= 0.0 {
             return None;
         }
         let after = self.time_to_speed(u, Real::new(0.0));
@@ -277,6 +283,14 @@ impl<K: Kind> Force<K> {
             distance: self.distance_after(u, after),
             after,
         })
+    }
+
+    /// About how long `length` takes, from the force at its beginning.
+    fn guess_time(&self, u: Real<K>, length: f64) -> f64 {
+        let w = u * u;
+        let gain = self.acceleration(u) * (2.0 * length);
+        let arrival = (w + gain).max(w * 0.25).sqrt();
+        (2.0 * length / (u + arrival)).value()
     }
 
     /// The time to cover `length`, by Newton's method kept in its bracket.
@@ -294,17 +308,17 @@ impl<K: Kind> Force<K> {
         let u = Real::new(u.value());
         let place = |t: f64| plain.distance_after(u, t.into()).value();
         let (mut low, mut high) = (0.0, within);
+        let mut t = plain.guess_time(u, length).min(0.5 * within);
         if high == f64::INFINITY {
-            high = 1.0;
-            while place(high) < length {
-                low = high;
-                high *= 2.0;
-                if high > 1e9 {
+            while place(t) < length {
+                low = t;
+                t *= 2.0;
+                if t > 1e9 {
                     return None;
                 }
             }
+            high = t;
         }
-        let mut t = 0.5 * (low + high);
         for _ in 0..100 {
             let miss = place(t) - length;
             // Beyond a speed without bound the place is not a number.
@@ -315,15 +329,15 @@ impl<K: Kind> Force<K> {
             }
             let speed = plain.speed_after(u, t.into()).value();
             let newton = t - miss / speed;
-            let next = if newton > low && newton < high {
+            // The caller takes one more step.
+            if (newton - t).abs() <= 1e-12 * t {
+                return Some(newton);
+            }
+            t = if newton > low && newton < high {
                 newton
             } else {
                 0.5 * (low + high)
             };
-            if (next - t).abs() <= 1e-15 * t {
-                return Some(next);
-            }
-            t = next;
         }
         Some(t)
     }
