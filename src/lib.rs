@@ -1,4 +1,6 @@
 //! couloir
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
 pub mod block;
 pub mod calibrate;
 pub mod cli;
@@ -13,6 +15,7 @@ pub mod noise;
 pub mod observe;
 pub mod physics;
 pub mod predict;
+pub mod prelude;
 pub mod prior;
 pub mod report;
 pub mod scalar;

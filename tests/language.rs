@@ -4,8 +4,8 @@
 use couloir::block::{Block, Field};
 use couloir::model::{Collector, Point, Program, Weights};
 use couloir::noise::{Ar, Iid};
-use couloir::physics::friction::{Friction, Rate, Site, Varies};
 use couloir::physics::friction::{Cohesion, Coulomb, Turbulent, Voellmy};
+use couloir::physics::friction::{Friction, Rate, Site, Varies};
 use couloir::physics::{Sum, Track};
 use couloir::prior::{Gamma, InverseGamma, Normal, Prior, Support, Uniform};
 use couloir::scalar::Kind;

@@ -224,7 +224,7 @@ impl<K: Kind> Force<K> {
     }
 
     fn stop_riccati(&self, u: Real<K>) -> Option<End<K>> {
-        if !(self.a < 0.0) {
+        if self.a >= 0.0 || self.a.value().is_nan() {
             return None;
         }
         let after = self.time_to_speed(u, Real::new(0.0));
