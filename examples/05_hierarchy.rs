@@ -9,7 +9,7 @@ model! {
     struct Slopes { events: Vec<Event> }
 
     centre ~ Normal(0.3, 0.1);
-    spread ~ HalfNormal(0.05);
+    spread ~ Gamma(4.0, 0.01);
     friction[i in 0..events.len()] ~ Coulomb { mu: Normal(centre, spread) };
     errors ~ Iid { sigma2: InverseGamma(3.0, 2.0) };
 
