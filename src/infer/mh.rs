@@ -2,8 +2,9 @@
 //!
 //! Two proposals: the paper's, in the parameters as named with a covariance
 //! tuned beforehand and then held (Heredia et al. 2020, equations 8-9), and
-//! an adaptive one on the real line whose covariance and scale keep learning
-//! at a vanishing rate (Haario, Saksman, Tamminen 2001; Andrieu, Thoms 2008).
+//! an adaptive one on the real line whose covariance goes on learning, every
+//! step counting alike (Haario, Saksman, Tamminen 2001), from a warm-up that
+//! learns faster and sets the scale too (Andrieu, Thoms 2008).
 
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
@@ -85,7 +86,9 @@ impl MetropolisHastings {
         let mut walk = Walk::new(posterior, &self.proposal, start)?;
         for step in 0..self.warmup {
             walk.step(&mut rng)?;
-            walk.learn(step);
+            let gain = (step as f64 / 4.0 + 2.0).powf(-0.66);
+            walk.learn_scale(gain);
+            walk.learn_shape(gain, step);
             tell(progress, step);
         }
         walk.accepted = 0;
@@ -93,7 +96,11 @@ impl MetropolisHastings {
         for step in 0..self.draws {
             walk.step(&mut rng)?;
             if self.proposal == Proposal::Adaptive {
-                walk.learn(self.warmup + step);
+                // Every step so far counts alike (Haario et al. 2001). A rate
+                // that vanishes slower, or a scale that goes on following
+                // the acceptance, was seen to cut tails off.
+                let total = self.warmup + step;
+                walk.learn_shape(1.0 / (total as f64 + 2.0), total);
             }
             rows.extend_from_slice(&walk.place);
             tell(progress, step);
@@ -291,14 +298,18 @@ impl<'p, 'm> Walk<'p, 'm> {
         Ok(())
     }
 
-    /// Learns mean, covariance and scale from the step just made, at a rate
-    /// that vanishes with the number of steps.
-    fn learn(&mut self, step: usize) {
+    /// Learns the scale from the acceptance of the step just made.
+    fn learn_scale(&mut self, gain: f64) {
+        if !self.held {
+            self.log_scale += gain * (self.acceptance - TARGET_ACCEPTANCE);
+        }
+    }
+
+    /// Learns mean and covariance from where the walk stands.
+    fn learn_shape(&mut self, gain: f64, step: usize) {
         if self.held {
             return;
         }
-        let gain = (step as f64 / 4.0 + 2.0).powf(-0.66);
-        self.log_scale += gain * (self.acceptance - TARGET_ACCEPTANCE);
         for (i, x) in self.place.iter().enumerate() {
             self.proposed[i] = x - self.mean[i];
             self.mean[i] += gain * self.proposed[i];

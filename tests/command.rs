@@ -1,0 +1,256 @@
+//! The command as a user runs it: exit codes, messages, files.
+
+#[path = "bad_input/cases.rs"]
+mod cases;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn couloir(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_couloir"))
+        .args(arguments)
+        .env("COLUMNS", "80")
+        .output()
+        .unwrap()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn printed(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// A fresh folder of this name.
+fn fresh(name: &str) -> PathBuf {
+    let folder =
+        Path::new(env!("CARGO_TARGET_TMPDIR")).join("command").join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    folder
+}
+
+const REFERENCE: &str =
+    concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/voellmy-21");
+
+/// Little work, for tests that look at the form of a result.
+const QUICK: [&str; 6] =
+    ["--draws", "500", "--warmup", "500", "--chains", "2"];
+
+#[test]
+fn every_malformed_input_ends_in_exit_code_2_and_writes_nothing() {
+    let root = fresh("bad-input");
+    let mut wrong = Vec::new();
+    for case in cases::all() {
+        let path = case.write(&root).unwrap();
+        let out = fresh("bad-input-out");
+        let output = couloir(&[
+            "calibrate",
+            &path.to_string_lossy(),
+            "--out",
+            &out.to_string_lossy(),
+        ]);
+        let text = said(&output);
+        let lines = text.lines().count();
+        let complete = case.expected.iter().all(|part| text.contains(part));
+        if output.status.code() != Some(2)
+            || lines != 1
+            || !complete
+            || !output.stdout.is_empty()
+            || out.exists()
+        {
+            wrong.push(format!("{}: {:?} {text}", case.name, output.status));
+        }
+    }
+    let _ = std::fs::remove_dir_all(root);
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn bad_arguments_end_in_exit_code_2() {
+    let cases: [(&[&str], &str); 14] = [
+        (&["calibrate", "--friction", "coulom"], "--friction"),
+        (&["calibrate", "--noise", "ar(0)"], "--noise"),
+        (&["calibrate", "--noise", "ar(2)"], "regular grid"),
+        (&["calibrate", "--backend", "nuts2"], "mh"),
+        (&["calibrate", "--backend", "map"], "no draws"),
+        (&["calibrate", "--chains", "0"], "1"),
+        (&["calibrate", "--draws=-3"], "draws"),
+        (&["calibrate", "--seed", "x"], "seed"),
+        (&["compare", "--model", "voellmy, iid"], "two models"),
+        (
+            &["compare", "--model", "voellmy", "--model", "coulomb, iid"],
+            "comma",
+        ),
+        (&["simulate", "--set", "nu=1"], "nu"),
+        (&["simulate", "--set", "mu"], "NAME=VALUE"),
+        (&["simulate", "--set", "mu=NaN"], "finite"),
+        (&["fly"], "fly"),
+    ];
+    for (arguments, part) in cases {
+        let output = couloir(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(said(&output).contains(part), "{}", said(&output));
+    }
+}
+
+#[test]
+fn a_prior_of_no_parameter_is_refused_unless_the_law_was_changed() {
+    let folder = fresh("unused-prior");
+    std::fs::create_dir_all(&folder).unwrap();
+    let event = cases::EVENT.to_owned() + "zeta = \"Gamma(9, 0.03)\"\n";
+    std::fs::write(folder.join("event.toml"), event).unwrap();
+    std::fs::write(folder.join("track.csv"), cases::TRACK).unwrap();
+    std::fs::write(folder.join("recording.csv"), cases::RECORDING).unwrap();
+    let output = couloir(&["calibrate", &folder.to_string_lossy()]);
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(said(&output).contains("zeta"), "{}", said(&output));
+}
+
+#[test]
+fn a_calibration_writes_what_the_formats_say() {
+    let out = fresh("calibration");
+    let mut arguments =
+        vec!["calibrate", REFERENCE, "--out", out.to_str().unwrap()];
+    arguments.extend(QUICK);
+    let output = couloir(&arguments);
+    assert!(output.status.success(), "{}", said(&output));
+    let read = |name| std::fs::read_to_string(out.join(name)).unwrap();
+    let json: Value = serde_json::from_str(&read("calibration.json")).unwrap();
+    assert_eq!(json["schema"], 1);
+    assert_eq!(json["model"]["friction"], "voellmy");
+    assert_eq!(json["model"]["noise"], "ar(1)");
+    assert_eq!(json["backend"], "mh");
+    for name in ["mu", "xi", "phi", "sigma2"] {
+        let parameter = &json["parameters"][name];
+        for key in [
+            "map",
+            "mean",
+            "sd",
+            "q025",
+            "q05",
+            "q50",
+            "q95",
+            "q975",
+            "rhat",
+            "ess_bulk",
+            "ess_tail",
+            "mcse_mean",
+        ] {
+            assert!(parameter[key].is_number(), "{name}.{key}");
+        }
+        assert!(parameter["unit"].is_string());
+    }
+    assert!(json["log_evidence"]["value"].is_number());
+    for key in ["ljung_box_p", "shapiro_wilk_p", "coverage90", "rmse"] {
+        assert!(json["checks"][key].is_number(), "checks.{key}");
+    }
+    assert_eq!(read("draws.csv").lines().count(), 1 + 2 * 500);
+    let page = read("report.html");
+    assert!(page.contains("<svg") && page.contains("Lautaret-like"));
+    let names: Vec<_> = std::fs::read_dir(&out).unwrap().collect();
+    assert_eq!(names.len(), 3, "{names:?}");
+}
+
+#[test]
+fn the_same_seed_prints_the_same_on_one_thread_and_two() {
+    let run = |threads: &str| {
+        let mut arguments = vec!["calibrate", REFERENCE, "--json"];
+        arguments.extend(QUICK);
+        let output = Command::new(env!("CARGO_BIN_EXE_couloir"))
+            .args(arguments)
+            .env("RAYON_NUM_THREADS", threads)
+            .output()
+            .unwrap();
+        printed(&output)
+    };
+    assert_eq!(run("1"), run("2"));
+}
+
+#[test]
+fn the_first_command_fits_80_columns() {
+    let output = couloir(&["calibrate", "--draws", "1000"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let text = printed(&output);
+    assert!(text.contains("mu") && text.contains("recording"));
+    for line in text.lines() {
+        assert!(line.chars().count() <= 80, "{line}");
+    }
+}
+
+#[test]
+fn models_are_compared_by_their_evidence() {
+    let output = couloir(&[
+        "compare",
+        REFERENCE,
+        "--model",
+        "voellmy, iid",
+        "--model",
+        "voellmy, ar(1)",
+        "--json",
+    ]);
+    let json: Value = serde_json::from_str(&printed(&output)).unwrap();
+    let factor = &json["models"][1]["log10_bayes_factor"];
+    let error = factor["value"].as_f64().unwrap() - 1.161;
+    // The quadrature's figure; five standard errors of this run.
+    assert!(error.abs() < 5.0 * factor["se"].as_f64().unwrap(), "{factor}");
+}
+
+#[test]
+fn a_simulation_has_the_values_it_was_given() {
+    let output = couloir(&[
+        "simulate",
+        REFERENCE,
+        "--set",
+        "mu=0.32",
+        "--set",
+        "xi=495.73",
+        "--json",
+    ]);
+    let json: Value = serde_json::from_str(&printed(&output)).unwrap();
+    assert_eq!(json["parameters"]["mu"], 0.32);
+    // The speed at t = 10 s by a Runge-Kutta solution on the smooth track;
+    // pieces of 1.4 m differ from it by some mm/s.
+    let speed = json["velocity"][10].as_f64().unwrap();
+    assert!((speed - 21.163_185).abs() < 0.02, "{speed}");
+}
+
+#[test]
+fn a_new_event_calibrates_as_it_is() {
+    let folder = fresh("new");
+    let path = folder.to_str().unwrap();
+    assert!(couloir(&["new", path]).status.success());
+    let again = couloir(&["new", path]);
+    assert_eq!(again.status.code(), Some(2), "{}", said(&again));
+    let mut arguments = vec!["calibrate", path];
+    arguments.extend(QUICK);
+    let output = couloir(&arguments);
+    assert!(output.status.success(), "{}", said(&output));
+}
+
+#[test]
+fn every_backend_is_benchmarked() {
+    let mut arguments = vec!["bench", REFERENCE, "--json"];
+    arguments.extend(QUICK);
+    let output = couloir(&arguments);
+    let json: Value = serde_json::from_str(&printed(&output)).unwrap();
+    let backends = json["backends"].as_array().unwrap();
+    assert_eq!(backends.len(), couloir::infer::BACKENDS.len());
+    for backend in backends {
+        assert!(backend["simulations"].as_u64().unwrap() > 0, "{backend}");
+    }
+}
+
+#[test]
+fn an_output_that_cannot_be_written_is_not_the_inputs_fault() {
+    let file = fresh("file");
+    std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+    std::fs::write(&file, "in the way").unwrap();
+    let mut arguments =
+        vec!["calibrate", REFERENCE, "--out", file.to_str().unwrap()];
+    arguments.extend(QUICK);
+    let output = couloir(&arguments);
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+}
