@@ -90,6 +90,7 @@ pub fn calibrate(
     };
     tell_recording(&mut report, series, predicted);
     check_fit(&mut report, &posterior, series, &median)?;
+    report.checks.kolmogorov_smirnov_p = chains_alike(&draws);
     report.track = track(model, &median)?;
     report.warnings.extend(convergence(&summaries, draws.chains()));
     Ok(Calibration { report, draws })
@@ -157,6 +158,16 @@ fn check_fit(
     report.innovation_times = series.times()[..n].to_vec();
     report.innovations = innovations;
     Ok(())
+}
+
+/// The smallest p-value of the tests between chains, for the number of pairs
+/// and parameters (Bonferroni); NaN for one chain.
+fn chains_alike(draws: &Draws) -> f64 {
+    let parameters = draws.dimension();
+    (0..parameters)
+        .filter_map(|i| draws::between_chains(draws, i))
+        .map(|found| (found.p_adjusted() * parameters as f64).min(1.0))
+        .fold(f64::NAN, f64::min)
 }
 
 /// How many draws of each chain a trace shows.

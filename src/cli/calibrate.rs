@@ -57,9 +57,14 @@ impl Arguments {
         for sentence in in_words(&found.report) {
             text.push_str(&wrapped(&sentence, width));
         }
+        let report = &found.report;
+        text.push_str(&format!(
+            "\n{}: {} simulations, {:.2} s, seed {}\n",
+            report.backend, report.simulations, report.seconds, report.seed
+        ));
         if let Some(folder) = &self.output.out {
             text.push_str(&format!(
-                "\nWritten to {}: report.html, calibration.json, draws.csv\n",
+                "Written to {}: report.html, calibration.json, draws.csv\n",
                 folder.display()
             ));
         }

@@ -10,6 +10,8 @@
 //! good for either sign of a and c and for c = 0. With b the equation is
 //! Riccati's in time; its speed is closed, its place closed in logarithms.
 
+use std::f64::consts::PI;
+
 use super::elementary::{atanhc, coshc, expc, lnc, sinhc, tanhc};
 use crate::scalar::{Kind, Real};
 
@@ -46,6 +48,9 @@ pub(crate) enum End<K: Kind> {
     Never,
 }
 
+/// 2 c l above which a stretch is left to [`Force::cross_far`].
+const FAR: f64 = 2.0;
+
 impl<K: Kind> Force<K> {
     /// du/dt at speed `u`.
     #[inline]
@@ -71,12 +76,13 @@ impl<K: Kind> Force<K> {
         }
         match self.cross(pace, length) {
             Some((arrival, after)) => End::Leaves { arrival, after },
-            None => self.stop(pace.u),
+            None => self.end_otherwise(pace, length),
         }
     }
 
     /// Crosses a finite stretch, b = 0: the arrival at its far border and the
-    /// time it takes; `None` where the mass stops on the way.
+    /// time it takes; `None` where the mass stops on the way, or the stretch
+    /// is long (see [`Force::cross_far`]).
     #[inline(always)]
     pub(crate) fn cross(
         &self,
@@ -88,12 +94,52 @@ impl<K: Kind> Force<K> {
         let spread = expc(x) * length * 2.0;
         let decay = 1.0 - c * spread;
         let w = pace.w * decay + a * spread;
-        if w.value() <= 0.0 {
+        if w.value() <= 0.0 || x.value().abs() > FAR {
             return None;
         }
         let u = w.sqrt();
         let q = spread / (u + pace.u * decay);
         Some((Pace { u, w }, q * atanhc(a * c * q * q)))
+    }
+
+    #[inline(never)]
+    fn end_otherwise(&self, pace: Pace<K>, length: Real<K>) -> End<K> {
+        if (self.c * length).value().abs() > 0.5 * FAR
+            && let Some((arrival, after)) = self.cross_far(pace, length)
+        {
+            return End::Leaves { arrival, after };
+        }
+        // Without a brake it is only too slow for a number.
+        if self.a >= 0.0 { End::Never } else { self.stop(pace.u) }
+    }
+
+    /// The same over so long a stretch that the speed forgets its beginning:
+    /// e from its own exponential, since 1 - c E has lost its digits, and the
+    /// time as (c l + ln((v + u1)/(v + u0)))/(c v), v = sqrt(a/c) the terminal
+    /// speed, where z is too near 1 for atanh.
+    fn cross_far(
+        &self,
+        pace: Pace<K>,
+        length: Real<K>,
+    ) -> Option<(Pace<K>, Real<K>)> {
+        let (a, c) = (self.a, self.c);
+        let x = c * length;
+        let decay = (-2.0 * x).exp();
+        let spread = (1.0 - decay) / c;
+        let w = pace.w * decay + a * spread;
+        if w.value() <= 0.0 {
+            return None;
+        }
+        let u = w.sqrt();
+        let q = spread / (u + pace.u * decay);
+        let z = a * c * q * q;
+        let after = if z > 0.5 {
+            let v = (a / c).sqrt();
+            (x + ((v + u) / (v + pace.u)).ln()) / (c * v)
+        } else {
+            q * atanhc(z)
+        };
+        Some((Pace { u, w }, after))
     }
 
     /// On a slope without end the mass stops or goes on for ever.
@@ -124,7 +170,13 @@ impl<K: Kind> Force<K> {
         let mean = 0.5 * (u + target);
         let rate = self.a - self.b * mean - self.c * u * target;
         let t = (target - u) / rate;
-        t * atanhc(self.discriminant() * t * t)
+        let discriminant = self.discriminant();
+        let after = t * atanhc(discriminant * t * t);
+        if after < 0.0 && discriminant < 0.0 {
+            // More than a quarter turn: the next branch of the arc tangent.
+            return after + PI / (-discriminant).sqrt();
+        }
+        after
     }
 
     /// b^2/4 + a c, the squared rate of approach to the terminal speed.
@@ -147,10 +199,9 @@ impl<K: Kind> Force<K> {
         if !self.b.is_constantly_zero() {
             self.distance_riccati(u, t)
         } else if rate * t.value() > 20.0 {
-            // y = cosh(r t) + c u sinh(r t)/r overflows; its log does not,
-            // and exp(-2 r t) is below round-off.
+            // y = cosh(r t) + c u sinh(r t)/r overflows; its log does not.
             let r = self.discriminant().sqrt();
-            (r * t + ((1.0 + self.c * u / r) * 0.5).ln()) / self.c
+            ln_of_growth(r * t, self.c * u / r) / self.c
         } else {
             let z = self.discriminant() * t * t;
             let p = (u * sinhc(z) + self.a * t * coshc(z)) * t;
@@ -174,7 +225,7 @@ impl<K: Kind> Force<K> {
         let k = (c * u + 0.5 * b) * t;
         let ln_y = if z > 400.0 {
             let r = z.sqrt();
-            r + ((1.0 + k / r) * 0.5).ln()
+            ln_of_growth(r, k / r)
         } else {
             (sinhc(z) * k + coshc(z) * z).ln_1p()
         };
@@ -224,7 +275,7 @@ impl<K: Kind> Force<K> {
     }
 
     fn stop_riccati(&self, u: Real<K>) -> Option<End<K>> {
-        if self.a >= 0.0 || self.a.value().is_nan() {
+        if self.a >= 0.0 {
             return None;
         }
         let after = self.time_to_speed(u, Real::new(0.0));
@@ -232,6 +283,14 @@ impl<K: Kind> Force<K> {
             distance: self.distance_after(u, after),
             after,
         })
+    }
+
+    /// About how long `length` takes, from the force at its beginning.
+    fn guess_time(&self, u: Real<K>, length: f64) -> f64 {
+        let w = u * u;
+        let gain = self.acceleration(u) * (2.0 * length);
+        let arrival = (w + gain).max(w * 0.25).sqrt();
+        (2.0 * length / (u + arrival)).value()
     }
 
     /// The time to cover `length`, by Newton's method kept in its bracket.
@@ -249,38 +308,44 @@ impl<K: Kind> Force<K> {
         let u = Real::new(u.value());
         let place = |t: f64| plain.distance_after(u, t.into()).value();
         let (mut low, mut high) = (0.0, within);
+        let mut t = plain.guess_time(u, length).min(0.5 * within);
         if high == f64::INFINITY {
-            high = 1.0;
-            while place(high) < length {
-                low = high;
-                high *= 2.0;
-                if high > 1e9 {
+            while place(t) < length {
+                low = t;
+                t *= 2.0;
+                if t > 1e9 {
                     return None;
                 }
             }
+            high = t;
         }
-        let mut t = 0.5 * (low + high);
         for _ in 0..100 {
             let miss = place(t) - length;
-            if miss > 0.0 {
-                high = t
-            } else {
+            // Beyond a speed without bound the place is not a number.
+            if miss <= 0.0 {
                 low = t
+            } else {
+                high = t
             }
             let speed = plain.speed_after(u, t.into()).value();
             let newton = t - miss / speed;
-            let next = if newton > low && newton < high {
+            // The caller takes one more step.
+            if (newton - t).abs() <= 1e-12 * t {
+                return Some(newton);
+            }
+            t = if newton > low && newton < high {
                 newton
             } else {
                 0.5 * (low + high)
             };
-            if (next - t).abs() <= 1e-15 * t {
-                return Some(next);
-            }
-            t = next;
         }
         Some(t)
     }
+}
+
+/// ln(cosh(x) + k sinh(x)) for large x.
+fn ln_of_growth<K: Kind>(x: Real<K>, k: Real<K>) -> Real<K> {
+    x + (((1.0 + k) + (1.0 - k) * (-2.0 * x).exp()) * 0.5).ln()
 }
 
 /// (x - 1 + exp(-x))/x^2: the ramp of a mass pulled from rest.

@@ -19,6 +19,10 @@ use crate::scalar::{Kind, Real};
 /// Relative and absolute tolerance of the integration (m, m/s).
 const TOLERANCE: f64 = 1e-10;
 
+/// Braking below this \[m/s2\] is the integration's error about a terminal
+/// speed.
+const NO_BRAKING: f64 = 1e-9;
+
 /// A leg is integrated over at most this time [s].
 const LONGEST: f64 = 60.0;
 
@@ -99,12 +103,14 @@ impl<'a, K: Kind, L: Friction<K>> NumericWalker<'a, K, L> {
     /// or the end of the stretch itself.
     fn find_end(&mut self, length: Real<K>, last: f64) {
         let y = self.at(last);
-        let border = (y[0] >= length.value())
-            .then(|| self.root(last, |y| y[0] - length.value()));
         let stop = (y[1] < 0.0).then(|| self.root(last, |y| -y[1]));
+        // Past its stop the integration runs backwards.
+        let furthest = stop.unwrap_or(last);
+        let border = (self.at(furthest)[0] >= length.value())
+            .then(|| self.root(furthest, |y| y[0] - length.value()));
         self.arrives = false;
         let (end, covers) = match (border, stop) {
-            (Some(t), stop) if stop.is_none_or(|s| t <= s) => {
+            (Some(t), _) => {
                 let (s, u) = unpack(&self.at(t));
                 let after = Real::new(t) - (s - length) / u.value();
                 let late = after - t;
@@ -112,13 +118,13 @@ impl<'a, K: Kind, L: Friction<K>> NumericWalker<'a, K, L> {
                 self.arrives = true;
                 (End::Leaves { arrival: Pace::new(speed), after }, length)
             }
-            (_, Some(t)) => {
+            (None, Some(t)) => {
                 let (s, u) = unpack(&self.at(t));
                 let brake = self.acceleration(Real::new(0.0)).value();
                 let after = Real::new(t) - u / brake;
                 (End::Stops { distance: s, after }, s)
             }
-            _ => {
+            (None, None) => {
                 let (s, speed) = unpack(&y);
                 let arrival = Pace::new(speed);
                 (End::Leaves { arrival, after: Real::new(last) }, s)
@@ -208,6 +214,13 @@ impl<K: Kind, L: Friction<K>> Walker<K> for NumericWalker<'_, K, L> {
             time: self.begins,
             distance: self.within + self.pieces[self.index].start,
         })
+    }
+
+    // Past the last border nothing but the speed changes the force: a mass
+    // that does not brake here never will.
+    fn is_endless(&self) -> bool {
+        let last = self.index + 1 == self.pieces.len();
+        last && self.acceleration(self.speed) > -NO_BRAKING
     }
 }
 

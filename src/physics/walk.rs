@@ -61,6 +61,10 @@ pub(crate) trait Walker<K: Kind> {
     fn state_at(&self, time: f64) -> State<K>;
     /// Where and when the mass came to rest, once it has.
     fn at_rest(&self) -> Option<Rest<K>>;
+    /// Whether the mass moves on for ever.
+    fn is_endless(&self) -> bool {
+        self.ends() == f64::INFINITY
+    }
 }
 
 /// Legs before a flow is given up as endless: far above any real track, it
@@ -143,7 +147,7 @@ fn follow<K: Kind>(
         if let Some(rest) = walker.at_rest() {
             return Ok(Some(rest));
         }
-        if walker.ends() == f64::INFINITY {
+        if walker.is_endless() {
             return Ok(None);
         }
         walker.advance()?;

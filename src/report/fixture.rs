@@ -68,6 +68,7 @@ pub(super) fn calibration() -> CalibrationReport {
         checks: Checks {
             ljung_box_p: 0.41,
             shapiro_wilk_p: 0.33,
+            kolmogorov_smirnov_p: 0.62,
             coverage90: 0.925,
             rmse: 2.05,
         },

@@ -27,6 +27,7 @@ pub fn calibration_json(report: &CalibrationReport) -> Value {
         "parameters": parameters,
         "log_evidence": report.evidence.as_ref().map(evidence),
         "checks": checks(&report.checks),
+        "simulations": report.simulations,
     })
 }
 
@@ -57,6 +58,7 @@ fn checks(c: &Checks) -> Value {
     json!({
         "ljung_box_p": c.ljung_box_p,
         "shapiro_wilk_p": c.shapiro_wilk_p,
+        "kolmogorov_smirnov_p": c.kolmogorov_smirnov_p,
         "coverage90": c.coverage90,
         "rmse": c.rmse,
     })

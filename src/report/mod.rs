@@ -156,6 +156,9 @@ pub struct Checks {
     pub ljung_box_p: f64,
     /// p-value of the Shapiro-Wilk test of the innovations.
     pub shapiro_wilk_p: f64,
+    /// The smallest p-value, over parameters, of Kolmogorov-Smirnov tests
+    /// between chains.
+    pub kolmogorov_smirnov_p: f64,
     /// Share of the values inside the 90 % predictive band.
     pub coverage90: f64,
     /// Root mean square of recording minus median flow.
@@ -167,6 +170,7 @@ impl Default for Checks {
         Self {
             ljung_box_p: f64::NAN,
             shapiro_wilk_p: f64::NAN,
+            kolmogorov_smirnov_p: f64::NAN,
             coverage90: f64::NAN,
             rmse: f64::NAN,
         }

@@ -183,6 +183,7 @@ fn facts(report: &CalibrationReport) -> Vec<(&'static str, String)> {
         ("values in the 90 % band", per_cent(c.coverage90)),
         ("Ljung-Box p", p_value(c.ljung_box_p)),
         ("Shapiro-Wilk p", p_value(c.shapiro_wilk_p)),
+        ("Kolmogorov-Smirnov p", p_value(c.kolmogorov_smirnov_p)),
     ];
     if !report.acceptance.is_empty() {
         let rates: Vec<_> =

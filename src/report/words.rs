@@ -143,7 +143,7 @@ fn error_clause(p: &ParameterReport, ar: bool, unit: &str) -> String {
         "sigma2" => deviation(f64::sqrt),
         "sigma" => deviation(|x| x),
         "phi" => format!(
-            "their correlation from one value to the next is {}",
+            "the errors' correlation from one value to the next is {}",
             estimate(p, false)
         ),
         _ => format!("{} is {}", p.name, estimate(p, false)),

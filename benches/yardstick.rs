@@ -1,0 +1,207 @@
+//! How far from the same work in plain C?
+//!
+//! Compiles the C programs in `../shared/yardstick`, where that folder is,
+//! and measures both sides in turn, so that the ratios hold on a noisy
+//! machine. Ratios are medians over pairs of runs.
+
+#![allow(missing_docs, clippy::print_stdout)]
+
+mod reference;
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+
+use couloir::infer::{Effort, MetropolisHastings, Proposal, Quiet, infer};
+use couloir::model::{Model, Point, Posterior, Weights};
+use couloir::physics::friction::Voellmy;
+use couloir::physics::{State, sample};
+use couloir::scalar::{Plain, Real};
+use couloir::{Event, Seed};
+
+fn main() {
+    let folder =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/yardstick");
+    let event = reference::event();
+    let model = reference::M1::new(event.clone());
+    if folder.is_dir() {
+        against_c(&folder, &event, &model);
+    } else {
+        println!("no {}: the C side is left out", folder.display());
+    }
+    gradient_ratio(&model);
+    threads_ratio(&model);
+}
+
+fn against_c(folder: &Path, event: &Event, model: &reference::M1) {
+    let yard = compile(folder, "yard.c");
+    let flows: Vec<(f64, f64)> = (0..5)
+        .map(|_| (flow_seconds(event), c_flow_seconds(folder, &yard)))
+        .collect();
+    tell("one simulation, couloir over C closed form", &flows);
+    let mh = compile(folder, "mh.c");
+    let chains: Vec<(f64, f64)> = (0..5)
+        .map(|_| (chains_seconds(model), c_chains_seconds(folder, &mh)))
+        .collect();
+    tell("4 x 50 000 Metropolis-Hastings steps, CPU", &chains);
+}
+
+fn compile(folder: &Path, source: &str) -> PathBuf {
+    let program = std::env::temp_dir().join(source.replace('.', "_"));
+    let done = Command::new("cc")
+        .args(["-O3", "-march=native", "-fno-math-errno"])
+        .arg(folder.join(source))
+        .arg("-o")
+        .arg(&program)
+        .arg("-lm")
+        .output();
+    assert!(done.is_ok_and(|out| out.status.success()), "cc {source}");
+    program
+}
+
+fn output(command: &mut Command) -> String {
+    let out = command.output().map(|out| out.stdout).unwrap_or_default();
+    String::from_utf8_lossy(&out).into_owned()
+}
+
+/// The mean seconds of one simulation over parameters as the C side has them.
+fn flow_seconds(event: &Event) -> f64 {
+    let count = 40_000;
+    let mut best = f64::INFINITY;
+    for _ in 0..7 {
+        let begun = Instant::now();
+        let mut sum = 0.0;
+        for i in 0..count {
+            let share = (i % 512) as f64 / 512.0;
+            let number = Real::<Plain>::new;
+            let law = Voellmy {
+                mu: number(0.2 + 0.25 * share),
+                xi: number(250.0 + 1000.0 * share),
+            };
+            let times = event.velocity.times();
+            let visit = |s: State<Plain>| sum += s.speed.value();
+            let path = event.path();
+            let release = event.release();
+            let done = sample(&path, &law, release, times, true, visit);
+            assert!(done.is_ok());
+        }
+        std::hint::black_box(sum);
+        best = best.min(begun.elapsed().as_secs_f64() / f64::from(count));
+    }
+    best
+}
+
+fn c_flow_seconds(folder: &Path, program: &Path) -> f64 {
+    let text = output(Command::new(program).current_dir(folder));
+    let line = text.lines().find(|l| l.contains("closed form series, 1.4 m"));
+    let ns = line
+        .and_then(|l| l.split("(min ").nth(1))
+        .and_then(|rest| rest.split(')').next())
+        .and_then(|n| n.parse::<f64>().ok());
+    ns.unwrap_or(f64::NAN) * 1e-9
+}
+
+/// CPU seconds of four chains of 50 000 steps on one thread.
+fn chains_seconds(model: &reference::M1) -> f64 {
+    let effort = Effort { chains: 4, draws: 50_000, warmup: 0 };
+    // As in the C program: a fixed proposal of the posterior's own shape.
+    let sd = [0.0783, 132.3, 0.1865, 2.76];
+    let covariance = nalgebra::DMatrix::from_fn(4, 4, |i, j| {
+        let correlation: f64 = match (i.min(j), i.max(j)) {
+            (0, 1) => 0.415,
+            (1, 2) => 0.3,
+            (a, b) if a == b => 1.0,
+            _ => 0.0,
+        };
+        1.19_f64.powi(2) * correlation * sd[i] * sd[j]
+    });
+    let backend = MetropolisHastings {
+        proposal: Proposal::Fixed(covariance),
+        starts: vec![reference::MIDDLE.to_vec()],
+        ..MetropolisHastings::random_walk(&effort)
+    };
+    on_threads(1, || run(&backend, model))
+}
+
+fn c_chains_seconds(folder: &Path, program: &Path) -> f64 {
+    let scratch = std::env::temp_dir().join("couloir-yardstick");
+    let _ = std::fs::create_dir_all(&scratch);
+    for name in ["data.csv", "profile_1p4m.csv"] {
+        let _ = std::fs::copy(folder.join(name), scratch.join(name));
+    }
+    let text = output(
+        Command::new(program)
+            .args(["profile_1p4m.csv", "1"])
+            .current_dir(scratch),
+    );
+    let seconds = text.split_whitespace().next();
+    seconds.and_then(|s| s.parse().ok()).unwrap_or(f64::NAN)
+}
+
+fn run(backend: &MetropolisHastings, model: &dyn Model) -> f64 {
+    let begun = Instant::now();
+    let found = Posterior::new(model)
+        .and_then(|p| infer(backend, &p, Seed::new(1), &Quiet));
+    assert!(found.is_ok());
+    begun.elapsed().as_secs_f64()
+}
+
+fn on_threads(threads: usize, work: impl FnOnce() -> f64 + Send) -> f64 {
+    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+        Ok(pool) => pool.install(work),
+        Err(_) => f64::NAN,
+    }
+}
+
+fn gradient_ratio(model: &reference::M1) {
+    let model: &dyn Model = model;
+    let z = Posterior::new(model)
+        .and_then(|posterior| posterior.line(&reference::MIDDLE))
+        .unwrap_or_default();
+    let count = 20_000;
+    let mut gradient = [0.0; 4];
+    let pairs: Vec<(f64, f64)> = (0..15)
+        .map(|_| {
+            let begun = Instant::now();
+            for _ in 0..count {
+                let weights = Weights::LINE;
+                let done = model.gradient(&z, weights, &mut gradient);
+                std::hint::black_box(&done);
+            }
+            let with = begun.elapsed().as_secs_f64();
+            let begun = Instant::now();
+            for _ in 0..count {
+                let done = model.evaluate(Point::Line(&z), None);
+                std::hint::black_box(&done);
+            }
+            (with, begun.elapsed().as_secs_f64())
+        })
+        .collect();
+    tell("one gradient over one log density", &pairs);
+}
+
+fn threads_ratio(model: &reference::M1) {
+    let effort = Effort { chains: 4, draws: 50_000, warmup: 1_000 };
+    let backend = MetropolisHastings::adaptive(&effort);
+    let pairs: Vec<(f64, f64)> = (0..5)
+        .map(|_| {
+            let one = on_threads(1, || run(&backend, model));
+            (one, on_threads(2, || run(&backend, model)))
+        })
+        .collect();
+    tell("one thread over two, 4 chains", &pairs);
+}
+
+/// The median of the ratios, with the range.
+fn tell(what: &str, pairs: &[(f64, f64)]) {
+    let mut ratios: Vec<f64> = pairs.iter().map(|(a, b)| a / b).collect();
+    ratios.sort_by(f64::total_cmp);
+    println!(
+        "{what}: {:.2} ({:.2} .. {:.2}); {:.3e} s over {:.3e} s",
+        ratios[ratios.len() / 2],
+        ratios[0],
+        ratios[ratios.len() - 1],
+        pairs[0].0,
+        pairs[0].1,
+    );
+}
