@@ -48,7 +48,7 @@
 //!   terrain), its release, and what was recorded of it.
 //! - A [`Series`] is a recording: what quantity, when, and the values.
 //! - A [block](block::Block) is a named part of a model with named
-//!   parameters: a [friction law](physics::friction) or a [noise](noise).
+//!   parameters: a [friction law](physics::friction) or a [`noise`].
 //! - A [`Program`] declares parameters and scores data; [`model!`] writes it.
 //!   Every program is a [`Model`].
 //! - A [`Posterior`](model::Posterior) is a model to be explored. It counts
