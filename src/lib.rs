@@ -77,7 +77,7 @@
 //!
 //! The reasons for all this are in `DESIGN.md`, the invariants in
 //! `ARCHITECTURE.md`.
-#![warn(clippy::print_stdout, clippy::print_stderr)]
+#![warn(clippy::print_stdout, clippy::print_stderr, clippy::unwrap_used)]
 
 pub mod block;
 pub mod calibrate;
