@@ -1,11 +1,15 @@
-//! What a model predicts: bands of the flow alone and with its errors.
+//! What a model predicts: bands of the flow alone and with its errors, and
+//! recordings that it might have led to.
 
 use rayon::prelude::*;
 
 use crate::draws::{Draws, quantile};
-use crate::error::{Error, Result};
-use crate::model::{Collector, Model, Point, Posterior, Replicates};
-use crate::seed::Seed;
+use crate::error::{Error, Outcome, Result};
+use crate::model::{Collector, Listener, Model, Point, Posterior, Replicates};
+use crate::noise::Noise;
+use crate::observe::Series;
+use crate::scalar::{Plain, Real};
+use crate::seed::{Rng, Seed};
 
 /// A prediction over time: the median flow and 90 % bands about it.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -54,7 +58,7 @@ pub fn posterior_predictive(
             replicate(posterior, || Point::Natural(row), seed.child(i as u64))
         })
         .collect::<Result<Vec<_>>>()?;
-    bands(pairs.into_iter().flatten().collect(), times)
+    bands(&pairs.into_iter().flatten().collect::<Vec<_>>(), times)
 }
 
 /// The same before any recording is seen: `count` draws from the prior.
@@ -81,7 +85,7 @@ pub fn prior_predictive(
             replicate(posterior, || Point::Natural(&row), seed.child(i))
         })
         .collect::<Result<Vec<_>>>()?;
-    bands(pairs.into_iter().flatten().collect(), times)
+    bands(&pairs.into_iter().flatten().collect::<Vec<_>>(), times)
 }
 
 /// The flow at a point and one replicate of its recording; `None` where the
@@ -105,7 +109,7 @@ fn replicate<'a>(
     Ok(flow.zip(full))
 }
 
-fn bands(pairs: Vec<Pair>, times: &[f64]) -> Result<Bands> {
+fn bands(pairs: &[Pair], times: &[f64]) -> Result<Bands> {
     if pairs.is_empty() {
         return Err(Error::inference("no draw has a flow to predict with"));
     }
@@ -144,5 +148,68 @@ impl Bands {
         let squares =
             values.iter().zip(&self.median).map(|(v, m)| (v - m).powi(2));
         (squares.sum::<f64>() / values.len() as f64).sqrt()
+    }
+}
+
+/// Synthetic recordings: what each series of the model might have shown if
+/// its parameters had the values `truth`. The series say when; the values
+/// that they hold are not looked at.
+///
+/// ```
+/// use couloir::prelude::*;
+/// model! {
+///     struct Dry { event: Event }
+///     friction ~ Coulomb { mu: Gamma(9.0, 0.03) };
+///     errors ~ Iid { sigma2: InverseGamma(3.0, 1.0) };
+///     likelihood {
+///         let flow = event.slide(&friction)?;
+///         event.velocity ~ flow.velocity() + errors;
+///     }
+/// }
+/// let plan = Event::on(Track::incline(35.0, 500.0)?)
+///     .velocity(Series::velocity(vec![1.0, 2.0, 3.0], vec![0.0; 3])?)
+///     .build()?;
+/// let seen = simulate(&Dry::new(plan.clone()), &[0.3, 0.01], Seed::new(1))?;
+/// let event = plan.with_recording(seen[0].clone())?;
+/// assert!((event.velocity.values()[2] - 9.65).abs() < 0.5);
+/// # Ok::<(), couloir::Error>(())
+/// ```
+///
+/// # Errors
+/// Values with which there is no flow or noise.
+pub fn simulate(
+    model: &dyn Model,
+    truth: &[f64],
+    seed: Seed,
+) -> Result<Vec<Series>> {
+    let mut rng = seed.rng();
+    let mut made = Made { rng: &mut rng, series: Vec::new() };
+    let density = model.evaluate(Point::Natural(truth), Some(&mut made))?;
+    match density.rejected {
+        None => Ok(made.series),
+        Some(reason) => Err(Error::input(format!(
+            "nothing can be simulated with the values {truth:?}: {reason}"
+        ))),
+    }
+}
+
+/// Collects synthetic series.
+struct Made<'a> {
+    rng: &'a mut Rng,
+    series: Vec<Series>,
+}
+
+impl Listener<Plain> for Made<'_> {
+    fn series(
+        &mut self,
+        series: &Series,
+        residuals: &[Real<Plain>],
+        noise: &dyn Noise<Plain>,
+    ) -> Outcome {
+        let mut one = Replicates::new(self.rng);
+        one.series(series, residuals, noise)?;
+        let values = one.series.into_iter().flatten().collect();
+        self.series.push(series.with_values(values)?);
+        Ok(())
     }
 }

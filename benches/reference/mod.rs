@@ -1,4 +1,5 @@
 //! The event that every benchmark runs on: `tests/data/voellmy-21`.
+#![allow(dead_code, reason = "not every bench needs all of it")]
 
 use std::path::Path;
 

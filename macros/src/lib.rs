@@ -4,6 +4,7 @@
 //! (`check`, `label`), and only a tree without errors is written out as a
 //! program (`expand`). Whatever is wrong is collected on the way and reported
 //! at once, each mistake on the user's own token.
+#![warn(clippy::print_stdout, clippy::print_stderr, clippy::unwrap_used)]
 
 mod body;
 mod check;

@@ -50,6 +50,13 @@ pub struct MetropolisHastings {
     pub starts: Vec<Vec<f64>>,
 }
 
+impl Default for MetropolisHastings {
+    /// The adaptive walk, four chains of 10 000 draws.
+    fn default() -> Self {
+        Self::adaptive(&Effort::default())
+    }
+}
+
 impl MetropolisHastings {
     /// The paper's random walk.
     pub fn random_walk(effort: &Effort) -> Self {

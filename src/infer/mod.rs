@@ -11,6 +11,7 @@ mod mh;
 mod mixture;
 mod reciprocal;
 mod smc;
+mod told;
 
 pub use importance::ImportanceSampling;
 pub use map::{Map, Mode};
@@ -58,7 +59,7 @@ pub trait Backend: Debug + Sync {
     ) -> Result<Inference>;
 }
 
-/// What an inference found.
+/// What an inference found; `{}` prints it as a short table.
 #[derive(Debug, Clone, Default)]
 pub struct Inference {
     /// Draws from the posterior, of the parameters as named.

@@ -177,6 +177,20 @@ impl Event {
 
     /// Solves the motion under a declared friction law.
     ///
+    /// Only what a model declared can slide, so that no law escapes a change
+    /// to the model. This does not compile:
+    ///
+    /// ```compile_fail,E0308
+    /// use couloir::prelude::*;
+    /// fn undeclared<K: Kind>(event: &Event, mu: Real<K>) -> Outcome {
+    ///     let law = Coulomb { mu };
+    ///     event.slide(&law)?; // expected `&Declared<..>`
+    ///     Ok(())
+    /// }
+    /// ```
+    ///
+    /// With `let law = run.declare(Coulomb { mu })` it does.
+    ///
     /// # Errors
     /// [`Stop::Reject`] where the law has no flow with these values.
     #[inline]

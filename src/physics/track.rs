@@ -131,6 +131,7 @@ impl Track {
     }
 
     /// The length of the surveyed part along the slope \[m\].
+    #[expect(clippy::misnamed_getters, reason = "the last piece is beyond")]
     pub fn length(&self) -> f64 {
         self.pieces[self.pieces.len() - 1].start
     }

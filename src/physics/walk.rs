@@ -430,6 +430,7 @@ impl<K: Kind, L: Friction<K>> ExactWalker<'_, K, L> {
     /// Crosses whole pieces until one holds `time` or something else than a
     /// border ends the leg. This is the loop that a simulation spends its
     /// time in: its state stays in registers.
+    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN ends it too")]
     #[inline(always)]
     fn skim(
         &mut self,

@@ -91,11 +91,12 @@ mod tests {
                 "model",
                 "parameters",
                 "schema",
-                "seed"
+                "seed",
+                "simulations"
             ]
         );
         assert_eq!(keys(&json["parameters"]["mu"]).len(), 13);
-        assert_eq!(keys(&json["checks"]).len(), 4);
+        assert_eq!(keys(&json["checks"]).len(), 5);
         assert_eq!(keys(&json["log_evidence"]).len(), 3);
         assert_eq!(keys(&json["model"]), ["friction", "noise"]);
     }
