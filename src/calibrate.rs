@@ -241,6 +241,9 @@ fn prior_curve(prior: &AnyPrior, curve: &[(f64, f64)]) -> Vec<(f64, f64)> {
     else {
         return Vec::new();
     };
+    if !prior.is_proper() {
+        return Vec::new();
+    }
     let low = prior.quantile(0.005).map_or(*low, |q| q.min(*low));
     let high = prior.quantile(0.995).map_or(*high, |q| q.max(*high));
     // Heavy tails would leave nothing of the posterior to see.

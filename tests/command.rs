@@ -70,7 +70,7 @@ fn every_malformed_input_ends_in_exit_code_2_and_writes_nothing() {
 
 #[test]
 fn bad_arguments_end_in_exit_code_2() {
-    let cases: [(&[&str], &str); 14] = [
+    let cases: [(&[&str], &str); 15] = [
         (&["calibrate", "--friction", "coulom"], "--friction"),
         (&["calibrate", "--noise", "ar(0)"], "--noise"),
         (&["calibrate", "--noise", "ar(2)"], "regular grid"),
@@ -79,6 +79,7 @@ fn bad_arguments_end_in_exit_code_2() {
         (&["calibrate", "--chains", "0"], "1"),
         (&["calibrate", "--draws=-3"], "draws"),
         (&["calibrate", "--seed", "x"], "seed"),
+        (&["calibrate", "--draws", "90000000"], "fewer --draws"),
         (&["compare", "--model", "voellmy, iid"], "two models"),
         (
             &["compare", "--model", "voellmy", "--model", "coulomb, iid"],

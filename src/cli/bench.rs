@@ -50,7 +50,7 @@ impl Arguments {
         let told = Told::new();
         let mut rows = Vec::new();
         for entry in BACKENDS {
-            let backend = (entry.make)(&self.work.effort());
+            let backend = (entry.make)(&self.work.effort()?);
             let seed = Seed::new(self.work.seed);
             let found = infer(backend.as_ref(), &posterior, seed, &told)?;
             rows.push(row(entry.name, found));

@@ -27,7 +27,7 @@ pub(super) struct Arguments {
 impl Arguments {
     pub(super) fn run(&self, laws: &Laws) -> Result<String> {
         let model = self.subject.model(laws)?;
-        let backend = backend(&self.backend, &self.work.effort())?;
+        let backend = backend(&self.backend, &self.work.effort()?)?;
         let told = Told::new();
         let found =
             calibrate(&model, backend.as_ref(), self.work.seed, &told)?;

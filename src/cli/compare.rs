@@ -85,7 +85,7 @@ impl Arguments {
             Some(noise.trim().to_owned()),
         )?;
         let posterior = Posterior::new(&model)?;
-        let backend = backend(&self.backend, &self.work.effort())?;
+        let backend = backend(&self.backend, &self.work.effort()?)?;
         let seed = Seed::new(self.work.seed);
         let found = infer(backend.as_ref(), &posterior, seed, told)?;
         let evidence = found.evidence.ok_or_else(|| {

@@ -16,7 +16,7 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::infer::{BACKENDS, Effort};
 use crate::physics::friction::Laws;
 
@@ -76,10 +76,21 @@ struct Work {
 }
 
 impl Work {
-    fn effort(&self) -> Effort {
-        Effort { chains: self.chains, draws: self.draws, warmup: self.warmup }
+    fn effort(&self) -> Result<Effort> {
+        if self.chains.saturating_mul(self.draws) > MOST_DRAWS {
+            return Err(Error::input(format!(
+                "{} chains of {} draws are more than {MOST_DRAWS} in all, \
+                 which memory is kept to; ask for fewer --draws",
+                self.chains, self.draws
+            )));
+        }
+        let (chains, draws, warmup) = (self.chains, self.draws, self.warmup);
+        Ok(Effort { chains, draws, warmup })
     }
 }
+
+/// The most draws of all chains together: 32 MB for each parameter.
+const MOST_DRAWS: usize = 4_000_000;
 
 /// Where results go.
 #[derive(Debug, Args)]
