@@ -8,8 +8,8 @@ use std::path::Path;
 
 use couloir::draws::{Draws, mcse_quantile, quantile};
 use couloir::infer::{
-    Backend, Effort, ImportanceSampling, Inference, Map, MetropolisHastings,
-    Quiet, Smc, infer,
+    BACKENDS, Backend, Effort, ImportanceSampling, Inference, Map,
+    MetropolisHastings, Quiet, Smc, infer,
 };
 use couloir::io::load;
 use couloir::model::{Assembled, Posterior};
@@ -167,6 +167,34 @@ fn the_evidence_by_importance_sampling() {
     let importance = ImportanceSampling::default();
     for seed in 1..=3 {
         assert_evidence(&importance, seed);
+    }
+}
+
+/// Every backend that the command can name, a new one unasked: draws by
+/// their quantiles, an evidence by its own error unless the backend warns of
+/// it, a mode by its height.
+#[test]
+fn every_listed_backend_agrees_with_the_quadrature() {
+    let effort = Effort { chains: 4, draws: 20_000, warmup: 5_000 };
+    let reference = reference();
+    let track = &reference["piecewise_linear_track"];
+    let expected = track["lnZ0"].as_f64().unwrap();
+    let best = &reference["map"]["M0"]["log_posterior_unnormalised"];
+    for entry in BACKENDS {
+        let backend = (entry.make)(&effort);
+        let found = run(backend.as_ref(), "iid", 11).unwrap();
+        assert!(found.cost.simulations > 0, "{}", entry.name);
+        if let Some(draws) = &found.draws {
+            assert_quantiles(draws, "M0");
+        }
+        if let Some(evidence) = &found.evidence {
+            let error = (evidence.log - expected).abs();
+            let warned = !found.warnings.is_empty();
+            assert!(warned || error < 4.0 * evidence.se, "{}", entry.name);
+        }
+        if let Some(mode) = &found.mode {
+            assert!(mode.log_density > best.as_f64().unwrap() - 1e-3);
+        }
     }
 }
 

@@ -148,16 +148,30 @@ impl<'a, K: Kind, L: Friction<K>> NumericWalker<'a, K, L> {
 
     /// Where a function of the state rises through 0 in (0, last].
     fn root(&self, last: f64, f: impl Fn(&DVector<f64>) -> f64) -> f64 {
-        let (mut low, mut high) = (0.0, last);
-        for _ in 0..80 {
-            let middle = 0.5 * (low + high);
-            if f(&self.at(middle)) < 0.0 {
-                low = middle
-            } else {
-                high = middle
+        let value = |t: f64| f(&self.at(t));
+        let (mut a, mut fa) = (0.0, value(0.0));
+        let (mut b, mut fb) = (last, value(last));
+        let mut side = 0.0;
+        // The false position, with the Illinois rule against a stuck end.
+        for _ in 0..60 {
+            let t = (a * fb - b * fa) / (fb - fa);
+            if !(t > a && t < b) || b - a <= 1e-15 * last {
+                break;
             }
+            let ft = value(t);
+            if ft == 0.0 {
+                return t;
+            }
+            if ft < 0.0 {
+                (a, fa) = (t, ft);
+                fb *= if side < 0.0 { 0.5 } else { 1.0 };
+            } else {
+                (b, fb) = (t, ft);
+                fa *= if side > 0.0 { 0.5 } else { 1.0 };
+            }
+            side = ft;
         }
-        0.5 * (low + high)
+        if -fa < fb { a } else { b }
     }
 }
 
