@@ -7,7 +7,6 @@ use std::process::ExitCode;
 
 /// Air drag of the car, 1910 kg with 2.15 m2, in a head wind of 3.1 m/s:
 /// r = k (u + w)^2 = k w^2 + 2 k w u + k u^2.
-#[derive(Debug, Clone, Copy)]
 struct AirDrag<S> {
     cd: S,
 }
@@ -16,7 +15,6 @@ impl<S: Copy> Block<S> for AirDrag<S> {
     const NAME: &'static str = "air-drag";
     const FIELDS: &'static [Field] =
         &[Field::new("cd", "1", "LogNormal(-1, 0.5)")];
-
     fn from_values(values: &[S]) -> Self {
         Self { cd: values[0] }
     }
@@ -26,7 +24,6 @@ impl<K: Kind> Friction<K> for AirDrag<Real<K>> {
     fn varies(&self) -> Varies {
         Varies::Nowhere
     }
-
     fn rate(&self, _: &Site, _: Real<K>) -> Rate<K> {
         let (k, w) = (self.cd * (0.5 * 1.06 * 2.15 / 1910.0), 3.1);
         let (constant, linear) = (k * w * w, 2.0 * k * w);
@@ -34,9 +31,10 @@ impl<K: Kind> Friction<K> for AirDrag<Real<K>> {
     }
 }
 
+// 2. The model.
 model! {
     struct Own { event: Event }
-    friction ~ Coulomb { mu: Gamma(2.0, 0.02) } + AirDrag { cd: Flat() };
+    friction ~ Coulomb { mu: Gamma(2.0, 0.02) } + AirDrag { cd: LogNormal(-1.0, 0.5) };
     errors ~ Iid { sigma2: InverseGamma(2.0, 0.02) };
     likelihood {
         let flow = event.slide(&friction)?;
@@ -49,9 +47,12 @@ fn main() -> Result<ExitCode> {
     if std::env::args().len() > 1 {
         return Ok(couloir::cli::main_with(&laws));
     }
+    // 1. The data: a car that coasted uphill, a real recording.
     let model = Own::new(couloir::io::coastdown(&laws)?.event);
-    let backend = MetropolisHastings::default();
-    let posterior = Posterior::new(&model)?;
-    println!("{}", infer(&backend, &posterior, Seed::new(1), &Quiet)?);
+    // 3. The inference.
+    let (backend, posterior) = (Smc::default(), Posterior::new(&model)?);
+    let found = infer(&backend, &posterior, Seed::new(1), &Quiet)?;
+    // 4. The result: the report that the recording is from says 0.348.
+    println!("{found}");
     Ok(ExitCode::SUCCESS)
 }

@@ -23,9 +23,9 @@ struct Hand {
 
 impl Program for Hand {
     fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
-        let (mu, sigma2) =
-            (Label::new("mu", "1"), Label::new("sigma2", "value2"));
+        let mu = Label::new("mu", "1");
         let mu = run.scalar(mu, Gamma::new(9.0, 0.03))?;
+        let sigma2 = Label::new("sigma2", "value2");
         let sigma2 = run.scalar(sigma2, InverseGamma::new(3.0, 2.0))?;
         let friction = run.declare(Coulomb { mu });
         let errors = run.declare(Iid { sigma2 });
@@ -37,11 +37,10 @@ impl Program for Hand {
 fn main() -> Result<()> {
     // 1. The data: synthetic, mu = 0.3 and errors of 1 m/s.
     let times = (1..=15).map(f64::from).collect();
-    let plan = Event::on(Track::incline(35.0, 1000.0)?)
-        .velocity(Series::velocity(times, vec![0.0; 15])?)
-        .build()?;
-    let planned = Hand { event: plan.clone() };
-    let seen = simulate(&planned, &[0.3, 1.0], Seed::new(4))?;
+    let series = Series::velocity(times, vec![0.0; 15])?;
+    let track = Track::incline(35.0, 1000.0)?;
+    let plan = Event::on(track).velocity(series).build()?;
+    let seen = simulate(&Macro::new(plan.clone()), &[0.3, 1.0], Seed::new(4))?;
     let event = plan.with_recording(seen[0].clone())?;
 
     // 3. The inference, of either.
@@ -54,7 +53,6 @@ fn main() -> Result<()> {
     let by_hand = explore(&Hand { event })?;
 
     // 4. The result.
-    println!("{by_hand}");
-    println!("the same draws: {}", by_macro.draws == by_hand.draws);
+    println!("{by_hand}\nthe same draws: {}", by_macro.draws == by_hand.draws);
     Ok(())
 }
