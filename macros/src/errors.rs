@@ -26,6 +26,11 @@ impl Errors {
         self.0.push(error);
     }
 
+    /// All errors of another collection.
+    pub(crate) fn append(&mut self, mut others: Self) {
+        self.0.append(&mut others.0);
+    }
+
     /// What a parser understood; its error is kept.
     pub(crate) fn keep<T>(&mut self, result: syn::Result<T>) -> Option<T> {
         result.map_err(|error| self.push(error)).ok()

@@ -94,7 +94,7 @@ fn line(trees: &[TokenTree], errors: &mut Errors) -> Option<Line> {
     }
     let Some(tilde) = find(rest, '~') else {
         no_tilde(rest, errors);
-        return Some(broken(rest, Vec::new()));
+        return Some(broken(rest, behind_another_mark(rest, errors)));
     };
     let head = errors.keep(head.parse2(stream(&rest[..tilde])));
     let right = right(&rest[tilde], &rest[tilde + 1..], errors);
@@ -185,6 +185,25 @@ fn no_tilde(trees: &[TokenTree], errors: &mut Errors) {
             errors.at(first, words);
         }
         [] => {}
+    }
+}
+
+/// What stands behind a `=` or `:` written for a `~`; it may hold more
+/// mistakes. Where it is no right side either, one error is enough.
+fn behind_another_mark(
+    trees: &[TokenTree],
+    errors: &mut Errors,
+) -> Vec<Right> {
+    let [TokenTree::Ident(_), mark, given @ ..] = trees else {
+        return Vec::new();
+    };
+    let mut more = Errors::default();
+    match right(mark, given, &mut more) {
+        Ok(right) if is_mark(mark, '=') || is_mark(mark, ':') => {
+            errors.append(more);
+            vec![right]
+        }
+        _ => Vec::new(),
     }
 }
 

@@ -435,6 +435,7 @@ fn all_errors_come_at_once_in_the_order_written() {
             ("x", "never used"),
             ("Gama", "no distribution"),
             ("=", "takes `~`"),
+            ("0.3", "write `mu = 0.3`"),
             ("InverseGamma", "2 arguments"),
             ("}", "a `;` is missing"),
             ("-", "the noise is added"),

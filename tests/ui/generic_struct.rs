@@ -1,7 +1,7 @@
 //! A struct with a type parameter.
+use couloir::model;
 use couloir::noise::Iid;
 use couloir::physics::friction::Coulomb;
-use couloir::{Event, model};
 
 model! {
     pub struct Calibration<T> { event: T }

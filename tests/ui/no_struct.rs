@@ -1,7 +1,5 @@
 //! A model without data.
-use couloir::noise::Iid;
-use couloir::physics::friction::Coulomb;
-use couloir::{Event, model};
+use couloir::model;
 
 model! {
     friction ~ Coulomb { mu: Gamma(9.0, 0.03) };

@@ -1,6 +1,5 @@
 //! rustc: a struct that is no block.
 use couloir::noise::Iid;
-use couloir::physics::friction::Coulomb;
 use couloir::{Event, model};
 
 struct Own<S> {

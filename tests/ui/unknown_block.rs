@@ -1,6 +1,5 @@
 //! rustc: a block that does not exist.
 use couloir::noise::Iid;
-use couloir::physics::friction::Coulomb;
 use couloir::{Event, model};
 
 model! {

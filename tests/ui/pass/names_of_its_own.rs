@@ -23,7 +23,7 @@ mod own {
     }
 
     pub struct K(pub f64);
-        pub struct Block0(pub f64);
+    pub struct Block0(pub f64);
 }
 
 fn run(x: f64) -> f64 {
