@@ -42,7 +42,10 @@ pub fn calibrate(
     let root = Seed::new(seed);
     let mut found = infer(backend, &posterior, root.child(0), progress)?;
     let draws = draws_of(&found, backend)?;
-    let mode = infer(&Map::default(), &posterior, root.child(1), progress)?;
+    let summaries = summarise(&draws);
+    let median: Vec<f64> = summaries.iter().map(|s| s.q50).collect();
+    let search = Map { starts: 4, from: vec![median.clone()] };
+    let mode = infer(&search, &posterior, root.child(1), progress)?;
     if found.evidence.is_none() && posterior.is_proper() {
         progress.begin("evidence", None);
         let sampler = ImportanceSampling::default();
@@ -61,8 +64,6 @@ pub fn calibrate(
     )?;
     let prior =
         prior_predictive(&posterior, 1000, series.times(), root.child(4)).ok();
-    let summaries = summarise(&draws);
-    let median: Vec<f64> = summaries.iter().map(|s| s.q50).collect();
     let mut report = CalibrationReport {
         event: model.event().name().to_owned(),
         friction: model.friction(),

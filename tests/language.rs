@@ -334,3 +334,40 @@ fn a_distribution_scores_value_by_value() {
     let total: f64 = expected.iter().sum();
     assert!((density.log_likelihood - total).abs() < 1e-12);
 }
+
+model! {
+    /// Errors of each event's own, a list of coefficients in each.
+    struct OwnErrors {
+        events: Vec<Event>,
+    }
+
+    friction ~ Coulomb { mu: Gamma(9.0, 0.03) };
+    errors[i in 0..events.len()] ~ Ar {
+        phi: [Uniform(-0.5, 0.5); 2],
+        sigma2: InverseGamma(3.0, 20.0),
+    };
+
+    likelihood {
+        for (event, errors) in events.iter().zip(&errors) {
+            let flow = event.slide(&friction)?;
+            event.velocity ~ flow.velocity() + errors;
+        }
+    }
+}
+
+#[test]
+fn a_list_in_one_of_several_blocks_has_two_indices() {
+    let events = vec![event(&[8.0, 9.0, 9.5]), event(&[7.0, 8.0, 8.5])];
+    assert_eq!(
+        names(&OwnErrors::new(events)),
+        [
+            "mu",
+            "phi[1,1]",
+            "phi[1,2]",
+            "sigma2[1]",
+            "phi[2,1]",
+            "phi[2,2]",
+            "sigma2[2]",
+        ]
+    );
+}

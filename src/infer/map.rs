@@ -4,7 +4,8 @@
 //! the density has kinks (a recording time that passes a piece's border) it
 //! stalls, and Nelder-Mead, which asks for no gradient, goes on from there.
 //! The mode is that of prior times likelihood in the parameters as named; the
-//! search runs on the real line, where there are no bounds.
+//! search runs on the real line, where there are no bounds, and measures steps
+//! there by the density's own curvature, so that no parameter is long.
 
 use argmin::core::{CostFunction, Executor, Gradient, State};
 use argmin::solver::linesearch::MoreThuenteLineSearch;
@@ -51,19 +52,29 @@ pub struct Mode {
     pub reached: Vec<f64>,
 }
 
-/// The problem as argmin sees it: minus the log density, on the line.
-struct Descent<'p, 'm>(&'p Posterior<'m>);
+/// The problem as argmin sees it: minus the log density at centre + factor y.
+#[derive(Clone, Copy)]
+struct Descent<'a, 'm> {
+    posterior: &'a Posterior<'m>,
+    centre: &'a DVector<f64>,
+    factor: &'a DMatrix<f64>,
+}
 
 /// What a rejected place costs: finite, so that a simplex can compare it.
 const WALL: f64 = 1e12;
+
+impl Descent<'_, '_> {
+    fn line(&self, y: &DVector<f64>) -> DVector<f64> {
+        self.centre + self.factor * y
+    }
+}
 
 impl CostFunction for Descent<'_, '_> {
     type Param = DVector<f64>;
     type Output = f64;
 
-    fn cost(&self, z: &DVector<f64>) -> Result<f64, argmin::core::Error> {
-        let density = self.0.density(Point::Line(z.as_slice()))?;
-        let height = value(&density, density.natural());
+    fn cost(&self, y: &DVector<f64>) -> Result<f64, argmin::core::Error> {
+        let height = height(self.posterior, &self.line(y))?;
         Ok(if height.is_finite() { -height } else { WALL })
     }
 }
@@ -74,62 +85,97 @@ impl Gradient for Descent<'_, '_> {
 
     fn gradient(
         &self,
-        z: &DVector<f64>,
+        y: &DVector<f64>,
     ) -> Result<DVector<f64>, argmin::core::Error> {
-        let mut gradient = DVector::zeros(z.len());
-        let slots = gradient.as_mut_slice();
-        self.0.gradient(z.as_slice(), Weights::NATURAL, slots)?;
-        Ok(-gradient)
+        let gradient = gradient(self.posterior, &self.line(y))?;
+        Ok(-self.factor.tr_mul(&gradient))
     }
 }
 
-impl Map {
-    /// The best place that one start leads to.
-    fn climb(
-        posterior: &Posterior<'_>,
-        start: &[f64],
-    ) -> Result<(f64, DVector<f64>)> {
-        let z = DVector::from_vec(posterior.line(start)?);
-        let height = |z: &DVector<f64>| -> Result<f64> {
-            let density = posterior.density(Point::Line(z.as_slice()))?;
-            Ok(value(&density, density.natural()))
-        };
-        let mut best = (height(&z)?, z);
-        for round in 0..12 {
-            let before = best.0;
-            let smooth = quasi_newton(posterior, &best.1);
-            let spread = if round == 0 { 0.3 } else { 0.05 };
-            for found in
-                smooth.into_iter().chain(simplex(posterior, &best.1, spread))
-            {
-                let at = height(&found)?;
-                if at > best.0 {
-                    best = (at, found);
-                }
-            }
-            let polished = simplex(posterior, &best.1, 0.5 * spread);
-            if let Some(found) = polished {
-                let at = height(&found)?;
-                if at > best.0 {
-                    best = (at, found);
-                }
-            }
-            if best.0 - before < 1e-7 && round > 0 {
-                break;
+/// ln(prior x likelihood) in the parameters as named, at a place on the line.
+fn height(posterior: &Posterior<'_>, z: &DVector<f64>) -> Result<f64> {
+    let density = posterior.density(Point::Line(z.as_slice()))?;
+    Ok(value(&density, density.natural()))
+}
+
+/// Its gradient along the line.
+fn gradient(
+    posterior: &Posterior<'_>,
+    z: &DVector<f64>,
+) -> Result<DVector<f64>> {
+    let mut gradient = DVector::zeros(z.len());
+    let slots = gradient.as_mut_slice();
+    posterior.gradient(z.as_slice(), Weights::NATURAL, slots)?;
+    Ok(gradient)
+}
+
+/// How thoroughly to climb: argmin's iterations, per dimension for the
+/// simplex, and the gain below which a round is the last.
+struct Pains {
+    quasi_newton: u64,
+    simplex: u64,
+    gain: f64,
+}
+
+/// Enough to tell which peak a start leads to.
+const ROUGH: Pains = Pains { quasi_newton: 50, simplex: 40, gain: 0.05 };
+/// Enough for the peak itself.
+const FINE: Pains = Pains { quasi_newton: 200, simplex: 400, gain: 1e-6 };
+
+/// The best place that one start leads to, and its height.
+fn climb(
+    posterior: &Posterior<'_>,
+    start: DVector<f64>,
+    pains: &Pains,
+) -> Result<(f64, DVector<f64>)> {
+    let mut best = (height(posterior, &start)?, start);
+    for round in 0..12 {
+        let before = best.0;
+        let centre = best.1.clone();
+        let factor = steps(posterior, &centre)?;
+        let descent = Descent { posterior, centre: &centre, factor: &factor };
+        let smooth = quasi_newton(descent, pains.quasi_newton);
+        let from = smooth.unwrap_or_else(|| DVector::zeros(centre.len()));
+        let spread = if round == 0 { 1.0 } else { 0.3 };
+        let kinked = simplex(descent, &from, spread, pains.simplex);
+        for found in [Some(from), kinked].into_iter().flatten() {
+            let found = descent.line(&found);
+            let at = height(posterior, &found)?;
+            if at > best.0 {
+                best = (at, found);
             }
         }
-        Ok(best)
+        if best.0 - before < pains.gain && round > 0 {
+            break;
+        }
     }
+    Ok(best)
 }
 
-/// L-BFGS from `start`; `None` where its line search fails.
+/// Steps on the line over which the height changes by about 1/2, one in each
+/// column, none longer than 1.
+fn steps(posterior: &Posterior<'_>, z: &DVector<f64>) -> Result<DMatrix<f64>> {
+    let curvature = curvature(posterior, z)?;
+    if curvature.iter().any(|c| !c.is_finite()) {
+        return Ok(DMatrix::identity(z.len(), z.len()) * 0.3);
+    }
+    let eigen = curvature.symmetric_eigen();
+    let mut steps = eigen.eigenvectors;
+    for (mut step, bend) in steps.column_iter_mut().zip(&eigen.eigenvalues) {
+        step /= bend.abs().max(1.0).sqrt();
+    }
+    Ok(steps)
+}
+
+/// L-BFGS from the centre; `None` where its line search fails.
 fn quasi_newton(
-    posterior: &Posterior<'_>,
-    start: &DVector<f64>,
+    descent: Descent<'_, '_>,
+    iterations: u64,
 ) -> Option<DVector<f64>> {
+    let start = DVector::zeros(descent.centre.len());
     let solver = LBFGS::new(MoreThuenteLineSearch::new(), 7);
-    let run = Executor::new(Descent(posterior), solver)
-        .configure(|state| state.param(start.clone()).max_iters(200))
+    let run = Executor::new(descent, solver)
+        .configure(|state| state.param(start).max_iters(iterations))
         .run()
         .ok()?;
     run.state().get_best_param().cloned()
@@ -137,9 +183,10 @@ fn quasi_newton(
 
 /// Nelder-Mead from a simplex of the given spread about `start`.
 fn simplex(
-    posterior: &Posterior<'_>,
+    descent: Descent<'_, '_>,
     start: &DVector<f64>,
     spread: f64,
+    iterations: u64,
 ) -> Option<DVector<f64>> {
     let mut corners = vec![start.clone()];
     for i in 0..start.len() {
@@ -148,39 +195,33 @@ fn simplex(
         corners.push(corner);
     }
     let solver = NelderMead::new(corners).with_sd_tolerance(1e-10).ok()?;
-    let run = Executor::new(Descent(posterior), solver)
-        .configure(|state| state.max_iters(400 * start.len() as u64))
+    let iterations = iterations * start.len() as u64;
+    let run = Executor::new(descent, solver)
+        .configure(|state| state.max_iters(iterations))
         .run()
         .ok()?;
     run.state().get_best_param().cloned()
 }
 
-/// The covariance of a normal approximation at the mode, from central
-/// differences of the exact gradient.
-fn covariance(
+/// Minus the Hessian of the height on the line, from central differences of
+/// the exact gradient.
+fn curvature(
     posterior: &Posterior<'_>,
     z: &DVector<f64>,
-) -> Result<Option<DMatrix<f64>>> {
+) -> Result<DMatrix<f64>> {
     let n = z.len();
-    let mut hessian = DMatrix::zeros(n, n);
+    let mut curvature = DMatrix::zeros(n, n);
     let h = 1e-4;
     for j in 0..n {
         for side in [1.0, -1.0] {
             let mut at = z.clone();
             at[j] += side * h;
-            let mut gradient = vec![0.0; n];
-            posterior.gradient(
-                at.as_slice(),
-                Weights::NATURAL,
-                &mut gradient,
-            )?;
-            for i in 0..n {
-                hessian[(i, j)] -= side * gradient[i] / (2.0 * h);
-            }
+            let slope = gradient(posterior, &at)? * (side / (2.0 * h));
+            let mut column = curvature.column_mut(j);
+            column -= slope;
         }
     }
-    let even: DMatrix<f64> = (&hessian + hessian.transpose()) * 0.5;
-    Ok(even.cholesky().map(|c| c.inverse()))
+    Ok((&curvature + curvature.transpose()) * 0.5)
 }
 
 impl Backend for Map {
@@ -203,19 +244,23 @@ impl Backend for Map {
         let mut ends = starts
             .par_iter()
             .map(|start| {
-                let end = Self::climb(posterior, start);
+                let start = DVector::from_vec(posterior.line(start)?);
+                let end = climb(posterior, start, &ROUGH);
                 progress.advance(1);
                 end
             })
             .collect::<Result<Vec<_>>>()?;
         ends.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let reached: Vec<f64> = ends.iter().map(|end| end.0).collect();
-        let Some((log_density, line)) = ends.into_iter().next() else {
+        let mut reached: Vec<f64> = ends.iter().map(|end| end.0).collect();
+        let Some((_, highest)) = ends.into_iter().next() else {
             return Err(Error::input("the search needs at least one start"));
         };
+        let (log_density, line) = climb(posterior, highest, &FINE)?;
+        reached[0] = log_density;
+        let curvature = curvature(posterior, &line)?;
         let mode = Mode {
             natural: posterior.natural(line.as_slice())?,
-            covariance: covariance(posterior, &line)?,
+            covariance: curvature.cholesky().map(|c| c.inverse()),
             line: line.as_slice().to_vec(),
             log_density,
             reached,

@@ -42,10 +42,7 @@ pub struct Posterior<'m> {
     model: &'m dyn Model,
     parameters: Vec<Parameter>,
     proper: bool,
-    densities: AtomicU64,
-    gradients: AtomicU64,
-    simulations: AtomicU64,
-    rejections: AtomicU64,
+    tally: Tally,
 }
 
 impl std::fmt::Debug for Posterior<'_> {
@@ -85,10 +82,7 @@ impl<'m> Posterior<'m> {
                 .map(|((name, unit), bounds)| Parameter { name, unit, bounds })
                 .collect(),
             proper: found.proper.iter().all(|p| *p),
-            densities: AtomicU64::new(0),
-            gradients: AtomicU64::new(0),
-            simulations: AtomicU64::new(0),
-            rejections: AtomicU64::new(0),
+            tally: Tally::default(),
         })
     }
 
@@ -128,7 +122,9 @@ impl<'m> Posterior<'m> {
     /// What no other parameter values would mend.
     #[inline]
     pub fn density(&self, point: Point<'_>) -> Result<Density> {
-        self.count(&self.densities, self.model.evaluate(point, None)?)
+        let density = self.model.evaluate(point, None)?;
+        self.tally.count(DENSITIES, &density);
+        Ok(density)
     }
 
     /// The density at a place on the real line with its gradient.
@@ -142,7 +138,8 @@ impl<'m> Posterior<'m> {
         gradient: &mut [f64],
     ) -> Result<Density> {
         let density = self.model.gradient(z, weights, gradient)?;
-        self.count(&self.gradients, density)
+        self.tally.count(GRADIENTS, &density);
+        Ok(density)
     }
 
     /// Everything that the model says at a point.
@@ -152,7 +149,7 @@ impl<'m> Posterior<'m> {
     pub fn collect(&self, point: Point<'_>) -> Result<(Density, Collected)> {
         let mut collector = Collector::default();
         let density = self.model.evaluate(point, Some(&mut collector))?;
-        let density = self.count(&self.densities, density)?;
+        self.tally.count(DENSITIES, &density);
         Ok((density, collector.collected))
     }
 
@@ -204,21 +201,45 @@ impl<'m> Posterior<'m> {
     /// What has been spent so far, without the time.
     pub fn cost(&self) -> Cost {
         Cost {
-            densities: self.densities.load(Relaxed),
-            gradients: self.gradients.load(Relaxed),
-            simulations: self.simulations.load(Relaxed),
-            rejections: self.rejections.load(Relaxed),
+            densities: self.tally.sum(DENSITIES),
+            gradients: self.tally.sum(GRADIENTS),
+            simulations: self.tally.sum(SIMULATIONS),
+            rejections: self.tally.sum(REJECTIONS),
             seconds: 0.0,
         }
     }
+}
 
+const DENSITIES: usize = 0;
+const GRADIENTS: usize = 1;
+const SIMULATIONS: usize = 2;
+const REJECTIONS: usize = 3;
+
+/// Counts of evaluations. Each thread counts on a stripe of its own, two
+/// cache lines apart from the next, so that threads do not wait for a line
+/// that another one writes.
+#[derive(Default)]
+struct Tally {
+    stripes: [Stripe; 16],
+}
+
+#[derive(Default)]
+#[repr(align(128))]
+struct Stripe([AtomicU64; 4]);
+
+impl Tally {
     #[inline]
-    fn count(&self, calls: &AtomicU64, density: Density) -> Result<Density> {
-        calls.fetch_add(1, Relaxed);
-        self.simulations.fetch_add(density.slides, Relaxed);
+    fn count(&self, calls: usize, density: &Density) {
+        let thread = rayon::current_thread_index().unwrap_or(0);
+        let Stripe(counts) = &self.stripes[thread % self.stripes.len()];
+        counts[calls].fetch_add(1, Relaxed);
+        counts[SIMULATIONS].fetch_add(density.slides, Relaxed);
         if density.rejected.is_some() {
-            self.rejections.fetch_add(1, Relaxed);
+            counts[REJECTIONS].fetch_add(1, Relaxed);
         }
-        Ok(density)
+    }
+
+    fn sum(&self, which: usize) -> u64 {
+        self.stripes.iter().map(|s| s.0[which].load(Relaxed)).sum()
     }
 }

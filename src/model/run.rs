@@ -20,26 +20,41 @@ use crate::seed::Rng;
 pub struct Label<'a> {
     name: &'a str,
     unit: &'a str,
-    index: Option<usize>,
+    indices: [Option<usize>; 2],
 }
 
 impl<'a> Label<'a> {
     /// A parameter of this name; unit "1" for a pure number.
     pub const fn new(name: &'a str, unit: &'a str) -> Self {
-        Self { name, unit, index: None }
+        Self { name, unit, indices: [None; 2] }
     }
 
-    /// The `index`-th of several (from 0); its name counts from 1.
+    /// The `index`-th of several (from 0); its name counts from 1. A second
+    /// index is that of a list within one of several blocks.
+    ///
+    /// ```
+    /// use couloir::Label;
+    /// let phi = Label::new("phi", "1");
+    /// assert_eq!(phi.at(2).name(), "phi[3]");
+    /// assert_eq!(phi.at(2).at(0).name(), "phi[3,1]");
+    /// ```
     #[must_use]
     pub const fn at(self, index: usize) -> Self {
-        Self { index: Some(index), ..self }
+        let indices = match self.indices {
+            [None, _] => [Some(index), None],
+            [outer, _] => [outer, Some(index)],
+        };
+        Self { indices, ..self }
     }
 
-    /// Its name, with the index in brackets where it has one.
+    /// Its name, with its indices in brackets where it has any.
     pub fn name(&self) -> String {
-        match self.index {
-            Some(i) => format!("{}[{}]", self.name, i + 1),
-            None => self.name.to_owned(),
+        match self.indices {
+            [Some(i), Some(j)] => {
+                format!("{}[{},{}]", self.name, i + 1, j + 1)
+            }
+            [Some(i), None] => format!("{}[{}]", self.name, i + 1),
+            _ => self.name.to_owned(),
         }
     }
 

@@ -7,7 +7,7 @@
 
 use super::exact::{End, Force, Pace};
 use super::friction::{Friction, Rate, Site, Varies};
-use super::numeric::NumericWalker;
+use super::numeric::{NumericWalker, PLAIN, WITH_DERIVATIVES};
 use super::track::{Piece, Track};
 use crate::error::Stop;
 use crate::scalar::{Kind, Real};
@@ -56,9 +56,9 @@ pub(crate) trait Walker<K: Kind> {
         Ok(())
     }
     /// The speed at a time on the current leg.
-    fn speed_at(&self, time: f64) -> Real<K>;
+    fn speed_at(&mut self, time: f64) -> Result<Real<K>, Stop>;
     /// The whole state there.
-    fn state_at(&self, time: f64) -> State<K>;
+    fn state_at(&mut self, time: f64) -> Result<State<K>, Stop>;
     /// Where and when the mass came to rest, once it has.
     fn at_rest(&self) -> Option<Rest<K>>;
     /// Whether the mass moves on for ever.
@@ -86,12 +86,19 @@ pub fn sample<K: Kind, L: Friction<K>>(
     speed_only: bool,
     visit: impl FnMut(State<K>),
 ) -> Result<(), Stop> {
-    if law.varies() == Varies::WithSpeed {
-        let walker = NumericWalker::new(path, law, release)?;
-        visit_times(walker, times, speed_only, visit)
-    } else {
-        let walker = ExactWalker::new(path, law, release)?;
-        visit_times(walker, times, speed_only, visit)
+    match law.varies() {
+        Varies::WithSpeed if K::DIRECTIONS == 0 => {
+            let walker = NumericWalker::<K, L, PLAIN>::new;
+            visit_times(walker(path, law, release)?, times, speed_only, visit)
+        }
+        Varies::WithSpeed => {
+            let walker = NumericWalker::<K, L, WITH_DERIVATIVES>::new;
+            visit_times(walker(path, law, release)?, times, speed_only, visit)
+        }
+        _ => {
+            let walker = ExactWalker::new(path, law, release)?;
+            visit_times(walker, times, speed_only, visit)
+        }
     }
 }
 
@@ -104,10 +111,14 @@ pub fn rest<K: Kind, L: Friction<K>>(
     law: &L,
     release: Release<K>,
 ) -> Result<Option<Rest<K>>, Stop> {
-    if law.varies() == Varies::WithSpeed {
-        follow(NumericWalker::new(path, law, release)?)
-    } else {
-        follow(ExactWalker::new(path, law, release)?)
+    match law.varies() {
+        Varies::WithSpeed if K::DIRECTIONS == 0 => {
+            follow(NumericWalker::<K, L, PLAIN>::new(path, law, release)?)
+        }
+        Varies::WithSpeed => follow(
+            NumericWalker::<K, L, WITH_DERIVATIVES>::new(path, law, release)?,
+        ),
+        _ => follow(ExactWalker::new(path, law, release)?),
     }
 }
 
@@ -130,11 +141,11 @@ fn visit_times<K: Kind>(
     for &time in times {
         walker.advance_to(time)?;
         visit(if speed_only {
-            let speed = walker.speed_at(time);
+            let speed = walker.speed_at(time)?;
             let zero = Real::new(0.0);
             State { speed, distance: zero, acceleration: zero }
         } else {
-            walker.state_at(time)
+            walker.state_at(time)?
         });
     }
     Ok(())
@@ -404,20 +415,20 @@ impl<K: Kind, L: Friction<K>> Walker<K> for ExactWalker<'_, K, L> {
     }
 
     #[inline(always)]
-    fn speed_at(&self, time: f64) -> Real<K> {
-        self.force.speed_after(self.pace.u, time - self.begins)
+    fn speed_at(&mut self, time: f64) -> Result<Real<K>, Stop> {
+        Ok(self.force.speed_after(self.pace.u, time - self.begins))
     }
 
     #[inline]
-    fn state_at(&self, time: f64) -> State<K> {
+    fn state_at(&mut self, time: f64) -> Result<State<K>, Stop> {
         let after = time - self.begins;
         let speed = self.force.speed_after(self.pace.u, after);
         let covered = self.force.distance_after(self.pace.u, after);
-        State {
+        Ok(State {
             speed,
             distance: self.place() + covered,
             acceleration: self.force.acceleration(speed),
-        }
+        })
     }
 
     fn at_rest(&self) -> Option<Rest<K>> {
