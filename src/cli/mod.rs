@@ -14,7 +14,7 @@ mod study;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::error::{Error, Result};
 use crate::infer::{BACKENDS, Effort};
@@ -48,9 +48,7 @@ struct Subject {
     /// Event folder, or its event.toml; a passenger car coasting uphill, a
     /// real recording, where none is given
     event: Option<PathBuf>,
-    /// Friction law instead of the event's: none, or one or a sum of coulomb,
-    /// turbulent, voellmy, pcm, cohesion, viscous, velocity-weakening,
-    /// curvature, entrainment, such as "coulomb + turbulent"
+    /// Friction law instead of the event's
     #[arg(long, value_name = "LAW")]
     friction: Option<String>,
     /// Noise instead of the event's: iid, ar(k), student
@@ -137,7 +135,11 @@ pub fn main() -> ExitCode {
 /// }
 /// ```
 pub fn main_with(laws: &Laws) -> ExitCode {
-    let cli = Cli::parse();
+    let matches = with_laws(Cli::command(), laws).get_matches();
+    let cli = match Cli::from_arg_matches(&matches) {
+        Ok(cli) => cli,
+        Err(error) => error.exit(),
+    };
     let outcome = match &cli.command {
         Command::Calibrate(arguments) => arguments.run(laws),
         Command::Compare(arguments) => arguments.run(laws),
@@ -152,6 +154,24 @@ pub fn main_with(laws: &Laws) -> ExitCode {
             ExitCode::from(if error.is_input() { 2 } else { 1 })
         }
     }
+}
+
+/// Lists the laws in the help of every `--friction`, a user's own included.
+fn with_laws(command: clap::Command, laws: &Laws) -> clap::Command {
+    let names: Vec<&str> = laws.iter().map(|law| law.name()).collect();
+    let help = format!(
+        "Friction law instead of the event's: none, or one or a sum of {}, \
+         such as \"coulomb + turbulent\"",
+        names.join(", ")
+    );
+    command.mut_subcommands(|subcommand| {
+        let takes_one =
+            subcommand.get_arguments().any(|a| a.get_id() == "friction");
+        if !takes_one {
+            return subcommand;
+        }
+        subcommand.mut_arg("friction", |a| a.help(&help))
+    })
 }
 
 /// Prints a result. A reader that has gone away (`| head`) is no error.
