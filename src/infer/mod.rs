@@ -9,6 +9,7 @@ mod importance;
 mod map;
 mod mh;
 mod mixture;
+mod quadrature;
 mod reciprocal;
 mod smc;
 mod told;
@@ -17,6 +18,7 @@ pub use importance::ImportanceSampling;
 pub use map::{Map, Mode};
 pub use mh::{MetropolisHastings, Proposal};
 pub use mixture::Mixture;
+pub use quadrature::{LEVELS, Marginal, Quadrature};
 pub use reciprocal::ReciprocalImportance;
 pub use smc::Smc;
 
@@ -66,6 +68,9 @@ pub struct Inference {
     pub draws: Option<Draws>,
     /// The posterior mode.
     pub mode: Option<Mode>,
+    /// Each parameter's posterior without Monte Carlo error, where the backend
+    /// integrates.
+    pub marginals: Vec<Marginal>,
     /// The evidence.
     pub evidence: Option<Evidence>,
     /// What it cost.
@@ -170,6 +175,11 @@ pub const BACKENDS: &[Entry] = &[
         name: "reciprocal",
         about: "evidence from chains as in the paper's appendix B",
         make: |effort| Box::new(ReciprocalImportance::of_effort(effort)),
+    },
+    Entry {
+        name: "quadrature",
+        about: "exact evidence and marginals, up to four parameters",
+        make: |_| Box::new(Quadrature::default()),
     },
     Entry {
         name: "map",

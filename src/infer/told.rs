@@ -2,13 +2,21 @@
 
 use std::fmt::{Display, Formatter, Result};
 
-use super::Inference;
+use super::{Inference, Marginal};
 use crate::draws::{Draws, Summary, summarise};
 
 impl Display for Inference {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         if let Some(draws) = &self.draws {
             tell_draws(draws, f)?;
+        }
+        for m in &self.marginals {
+            let Marginal { name, mean, sd, .. } = m;
+            let (low, high) = (m.quantiles[1], m.quantiles[5]);
+            writeln!(
+                f,
+                "{name:18} {mean:.4} +- {sd:.4} ({low:.4} .. {high:.4})"
+            )?;
         }
         if let Some(mode) = &self.mode {
             let values: Vec<_> =
