@@ -73,6 +73,7 @@
 //! | [`infer`], [`predict`] | backends; predictions |
 //! | [`io`], [`report`] | event files in; tables, pictures and pages out |
 //! | [`calibrate`] | a whole calibration |
+//! | [`mod@reproduce`] | the paper's study, computed again |
 //! | [`cli`] | the command: nothing below it prints |
 //!
 //! The reasons for all this are in `DESIGN.md`, the invariants in
@@ -96,6 +97,7 @@ pub mod predict;
 pub mod prelude;
 pub mod prior;
 pub mod report;
+pub mod reproduce;
 pub mod scalar;
 pub mod seed;
 

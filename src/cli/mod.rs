@@ -8,6 +8,7 @@ mod calibrate;
 mod compare;
 mod new;
 mod progress;
+mod reproduce;
 mod simulate;
 mod study;
 
@@ -40,6 +41,8 @@ enum Command {
     New(new::Arguments),
     /// Run every backend on an event, side by side
     Bench(bench::Arguments),
+    /// Compute the study of Heredia et al. (2020) again
+    Reproduce(reproduce::Arguments),
 }
 
 /// Which event, and what to change of its model.
@@ -146,6 +149,7 @@ pub fn main_with(laws: &Laws) -> ExitCode {
         Command::Simulate(arguments) => arguments.run(laws),
         Command::New(arguments) => arguments.run(),
         Command::Bench(arguments) => arguments.run(laws),
+        Command::Reproduce(arguments) => arguments.run(),
     };
     match outcome {
         Ok(text) => print(&text),

@@ -92,7 +92,7 @@ const MOST: usize = 4;
 /// Nodes along each of 1, 2, .. axes.
 const NODES: [usize; MOST] = [96, 48, 24, 20];
 /// Nodes along each axis while the grid looks for its box.
-const COARSE: usize = 10;
+const COARSE: usize = 8;
 /// The share of the highest marginal density that is negligible at an edge: it
 /// is also about what the integral lacks.
 const NEGLIGIBLE: f64 = 1e-6;

@@ -18,7 +18,7 @@ mod words;
 
 pub use crate::predict::Bands;
 pub use json::calibration_json;
-pub use page::page;
+pub use page::{figure, page, standalone};
 pub use svg::{Picture, pictures};
 pub use terminal::{picture, table};
 pub use words::in_words;

@@ -22,7 +22,21 @@ const STYLE: &str = include_str!("page.css");
 /// ```
 pub fn page(report: &CalibrationReport) -> String {
     let title = format!("{}: calibration", plain(&report.event));
-    let body = html! {
+    standalone(
+        &title,
+        &html! {
+            (heading(report))
+            (words(report))
+            (table(&report.parameters))
+            @for picture in pictures(report) { (figure(&picture)) }
+            (computed(report))
+        },
+    )
+}
+
+/// A page of one file, with the style that all pages share.
+pub fn standalone(title: &str, body: &Markup) -> String {
+    let whole = html! {
         (DOCTYPE)
         html lang="en" {
             head {
@@ -32,16 +46,10 @@ pub fn page(report: &CalibrationReport) -> String {
                 title { (title) }
                 style { (PreEscaped(STYLE)) }
             }
-            body {
-                (heading(report))
-                (words(report))
-                (table(&report.parameters))
-                @for picture in pictures(report) { (figure(&picture)) }
-                (computed(report))
-            }
+            body { (body) }
         }
     };
-    body.into_string()
+    whole.into_string()
 }
 
 fn heading(report: &CalibrationReport) -> Markup {
@@ -132,7 +140,8 @@ fn row(p: &ParameterReport) -> Markup {
     }
 }
 
-fn figure(picture: &Picture) -> Markup {
+/// A picture under its heading, with its caption.
+pub fn figure(picture: &Picture) -> Markup {
     html! {
         h2 { (picture.title) }
         figure id=(picture.name) {

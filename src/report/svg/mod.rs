@@ -6,7 +6,9 @@
 //! offer.
 
 mod axes;
+mod boxes;
 mod canvas;
+mod curves;
 mod densities;
 mod pairs;
 mod palette;
@@ -14,6 +16,9 @@ mod recording;
 mod residuals;
 mod traces;
 mod track;
+
+pub use boxes::{Boxes, box_plots};
+pub use curves::{Curves, curves};
 
 use super::{CalibrationReport, text};
 

@@ -1,0 +1,270 @@
+//! Table 5 and Figure 8: how often 90 % intervals hold the truth.
+
+use rayon::prelude::*;
+
+use super::experiment::{Priors, TRUTH, Which, model, plan, series};
+use crate::draws::{Draws, summarise};
+use crate::error::{Error, Result};
+use crate::infer::{
+    Effort, ImportanceSampling, Inference, Map, Marginal, MetropolisHastings,
+    Progress, Quadrature, Quiet, infer,
+};
+use crate::model::Posterior;
+use crate::observe::{Event, Series};
+use crate::seed::Seed;
+
+/// One model over all series.
+#[derive(Debug, Clone)]
+pub struct ModelStudy {
+    /// Which.
+    pub which: Which,
+    /// The parameters' names.
+    pub names: Vec<String>,
+    /// How many of the samplers' 90 % intervals hold the truth, by parameter.
+    pub covered: Vec<usize>,
+    /// The same of the exact intervals.
+    pub covered_exactly: Vec<usize>,
+    /// The posterior mode of each series, by parameter.
+    pub modes: Vec<Vec<f64>>,
+    /// The lowest and the highest acceptance rate of any series' chain.
+    pub acceptance: (f64, f64),
+    /// ln evidence of each series by importance sampling.
+    pub log_evidence: Vec<f64>,
+    /// The same by quadrature.
+    pub log_evidence_exact: Vec<f64>,
+}
+
+/// Both models under one prior.
+#[derive(Debug, Clone)]
+pub struct PriorStudy {
+    /// "wide" or "printed".
+    pub name: &'static str,
+    /// The priors.
+    pub priors: Priors,
+    /// M0 and M1.
+    pub models: [ModelStudy; 2],
+}
+
+impl PriorStudy {
+    /// log10 of the Bayes factor of M1 against M0, by series.
+    pub fn log10_bf(&self) -> Vec<f64> {
+        let [m0, m1] = &self.models;
+        log10_ratio(&m1.log_evidence, &m0.log_evidence)
+    }
+
+    /// The same by quadrature.
+    pub fn log10_bf_exact(&self) -> Vec<f64> {
+        let [m0, m1] = &self.models;
+        log10_ratio(&m1.log_evidence_exact, &m0.log_evidence_exact)
+    }
+}
+
+fn log10_ratio(above: &[f64], below: &[f64]) -> Vec<f64> {
+    let ratio = |(a, b): (&f64, &f64)| (a - b) / std::f64::consts::LN_10;
+    above.iter().zip(below).map(ratio).collect()
+}
+
+/// What one series says under one model.
+struct Fit {
+    names: Vec<String>,
+    intervals: Vec<(f64, f64)>,
+    exact: Vec<Marginal>,
+    mode: Vec<f64>,
+    acceptance: f64,
+    log_evidence: f64,
+    log_evidence_exact: f64,
+}
+
+/// As in the paper: 20 000 steps of the random walk, the last 10 000 kept.
+const PAPERS: Effort = Effort { chains: 1, draws: 10_000, warmup: 10_000 };
+
+/// A short walk: enough to tell the quadrature where to look.
+const SCOUTING: Effort = Effort { chains: 1, draws: 2000, warmup: 1500 };
+
+fn walk(
+    posterior: &Posterior<'_>,
+    effort: &Effort,
+    seed: Seed,
+) -> Result<Draws> {
+    let walk = MetropolisHastings::random_walk(effort);
+    let found = infer(&walk, posterior, seed, &Quiet)?;
+    found.draws.ok_or_else(|| Error::inference("the walk left no draws"))
+}
+
+fn evidence(found: &Inference) -> f64 {
+    found.evidence.as_ref().map_or(f64::NAN, |e| e.log)
+}
+
+fn fit(
+    event: Event,
+    which: Which,
+    priors: &Priors,
+    seed: Seed,
+) -> Result<Fit> {
+    let model = model(event, which, priors)?;
+    let posterior = Posterior::new(&model)?;
+    let draws = walk(&posterior, &PAPERS, seed.child(0))?;
+    let summaries = summarise(&draws);
+    let median = summaries.iter().map(|s| s.q50).collect();
+    let search = Map { starts: 1, from: vec![median] };
+    let mode = infer(&search, &posterior, seed.child(1), &Quiet)?.mode;
+    let sampler =
+        ImportanceSampling { draws: 4000, ..ImportanceSampling::default() };
+    let sampled =
+        sampler.from_draws(&posterior, &draws, seed.child(2), &Quiet)?;
+    let exact =
+        Quadrature::default().from_draws(&posterior, &draws, &Quiet)?;
+    Ok(Fit {
+        names: draws.names().to_vec(),
+        intervals: summaries.iter().map(|s| (s.q05, s.q95)).collect(),
+        mode: mode.map_or_else(Vec::new, |m| m.natural),
+        acceptance: draws.acceptance().first().copied().unwrap_or(f64::NAN),
+        log_evidence: evidence(&sampled),
+        log_evidence_exact: evidence(&exact),
+        exact: exact.marginals,
+    })
+}
+
+/// The study's synthetic series, the same under every prior.
+pub(super) fn synthetic(samples: usize, seed: Seed) -> Result<Vec<Series>> {
+    let plan = plan(1.0, 0.0)?;
+    (0..samples as u64)
+        .into_par_iter()
+        .map(|i| series(&plan, TRUTH, seed.child(i)))
+        .collect()
+}
+
+/// Calibrates every series with both models.
+pub(super) fn study(
+    name: &'static str,
+    priors: Priors,
+    seen: &[Series],
+    seed: Seed,
+    progress: &dyn Progress,
+) -> Result<PriorStudy> {
+    let plan = plan(1.0, 0.0)?;
+    let of = |which: Which| -> Result<ModelStudy> {
+        let fits = seen
+            .par_iter()
+            .enumerate()
+            .map(|(i, series)| {
+                let event = plan.with_recording(series.clone())?;
+                let seed = seed.child(which as u64).child(i as u64);
+                let fit = fit(event, which, &priors, seed);
+                progress.advance(1);
+                fit
+            })
+            .collect::<Result<Vec<_>>>()?;
+        Ok(gathered(which, &fits))
+    };
+    let models = [of(Which::M0)?, of(Which::M1)?];
+    Ok(PriorStudy { name, priors, models })
+}
+
+fn gathered(which: Which, fits: &[Fit]) -> ModelStudy {
+    let truth = which.truth(TRUTH);
+    let count = |holds: &dyn Fn(&Fit, usize, f64) -> bool| -> Vec<usize> {
+        truth
+            .iter()
+            .enumerate()
+            .map(|(i, truth)| {
+                fits.iter().filter(|f| holds(f, i, *truth)).count()
+            })
+            .collect()
+    };
+    let rates = || fits.iter().map(|f| f.acceptance);
+    ModelStudy {
+        which,
+        names: fits.first().map_or_else(Vec::new, |f| f.names.clone()),
+        covered: count(&|fit, i, truth| {
+            let (low, high) = fit.intervals[i];
+            low <= truth && truth <= high
+        }),
+        covered_exactly: count(&|fit, i, truth| fit.exact[i].covers(truth)),
+        modes: (0..truth.len())
+            .map(|i| fits.iter().map(|f| f.mode[i]).collect())
+            .collect(),
+        acceptance: (
+            rates().fold(f64::INFINITY, f64::min),
+            rates().fold(f64::NEG_INFINITY, f64::max),
+        ),
+        log_evidence: fits.iter().map(|f| f.log_evidence).collect(),
+        log_evidence_exact: fits
+            .iter()
+            .map(|f| f.log_evidence_exact)
+            .collect(),
+    }
+}
+
+/// Coverage by quadrature alone, where the series come about in another way
+/// than they are calibrated.
+#[derive(Debug, Clone)]
+pub struct Reading {
+    /// What is different.
+    pub what: &'static str,
+    /// How many series.
+    pub samples: usize,
+    /// How many 90 % intervals hold the truth, by model and parameter.
+    pub covered: [Vec<usize>; 2],
+    /// The mean width of mu's 90 % interval, by model.
+    pub width_mu: [f64; 2],
+    /// log10 of the Bayes factor of M1 against M0, by series.
+    pub log10_bf: Vec<f64>,
+}
+
+/// Exact intervals of series that `draw` makes, calibrated on `plan`.
+pub(super) fn reading(
+    what: &'static str,
+    samples: usize,
+    plan: &Event,
+    priors: &Priors,
+    seed: Seed,
+    progress: &dyn Progress,
+    draw: &(dyn Fn(Seed) -> Result<Series> + Sync),
+) -> Result<Reading> {
+    let found = (0..samples as u64)
+        .into_par_iter()
+        .map(|i| {
+            let seed = seed.child(i);
+            let event = plan.with_recording(draw(seed.child(0))?)?;
+            let fits = Which::BOTH.map(|which| {
+                exactly(event.clone(), which, priors, seed.child(1))
+            });
+            progress.advance(1);
+            let [m0, m1] = fits;
+            Ok([m0?, m1?])
+        })
+        .collect::<Result<Vec<_>>>()?;
+    let covered = [0, 1].map(|m| {
+        let truth = Which::BOTH[m].truth(TRUTH);
+        let holds = |i: usize| {
+            let hit = |f: &&[Inference; 2]| f[m].marginals[i].covers(truth[i]);
+            found.iter().filter(hit).count()
+        };
+        (0..truth.len()).map(holds).collect()
+    });
+    let width_mu = [0, 1].map(|m| {
+        let width = |f: &[Inference; 2]| {
+            let q = f[m].marginals[0].quantiles;
+            q[5] - q[1]
+        };
+        found.iter().map(width).sum::<f64>() / samples.max(1) as f64
+    });
+    let log10_bf = found
+        .iter()
+        .map(|[m0, m1]| (evidence(m1) - evidence(m0)) / f64::ln(10.0))
+        .collect();
+    Ok(Reading { what, samples, covered, width_mu, log10_bf })
+}
+
+fn exactly(
+    event: Event,
+    which: Which,
+    priors: &Priors,
+    seed: Seed,
+) -> Result<Inference> {
+    let model = model(event, which, priors)?;
+    let posterior = Posterior::new(&model)?;
+    let draws = walk(&posterior, &SCOUTING, seed)?;
+    Quadrature::default().from_draws(&posterior, &draws, &Quiet)
+}
