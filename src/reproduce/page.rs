@@ -294,40 +294,43 @@ fn bayes_factors(found: &Reproduction) -> Picture {
 }
 
 fn readings_table(title: &str, all: &[Reading], wide: &PriorStudy) -> Markup {
-    let shares = |r: &Reading, m: usize| -> String {
-        let names = wide.models[m].names.iter();
-        let parts: Vec<String> = names
-            .zip(&r.covered[m])
-            .map(|(n, count)| format!("{n} {}", percent(*count, r.samples)))
-            .collect();
-        parts.join(", ")
+    let shares = |r: &Reading, m: usize| -> Vec<String> {
+        r.covered[m].iter().map(|n| percent(*n, r.samples)).collect()
     };
+    let heading =
+        |m: usize| format!("M{m}: {}", wide.models[m].names.join(" / "));
     html! {
         h2 { (title) }
         div.wide { table {
             thead { tr {
-                @for heading in ["series", "M0 covers", "M1 covers",
-                    "width of mu, M0", "M1", "log10 B10"] {
-                    th scope="col" { (heading) }
-                }
+                th scope="col" { "series" }
+                th scope="col" { (heading(0)) }
+                th scope="col" { (heading(1)) }
+                th scope="col" { "log10 B10" }
             } }
             tbody { @for r in all { tr {
-                td.name { (r.what) }
-                td { (shares(r, 0)) }
-                td { (shares(r, 1)) }
-                td { (format!("{:.3}", r.width_mu[0])) }
-                td { (format!("{:.3}", r.width_mu[1])) }
+                td.said { (r.what) }
+                td { (shares(r, 0).join(" / ")) }
+                td { (shares(r, 1).join(" / ")) }
                 td { (format!("{:.2}", median(&r.log10_bf))) }
             } } }
         } }
-        p.note { "Coverage of exact 90 % intervals in per cent of "
-            (all.first().map_or(0, |r| r.samples))
-            " series (standard error about "
-            (all.first().map_or(0.0, |r| {
-                error_of(r.samples * 4 / 5, r.samples)
-            }).round())
-            "), xi's prior wide; the mean width of mu's interval; the \
-             median of log10 B10." }
+        (readings_note(all))
+    }
+}
+
+fn readings_note(all: &[Reading]) -> Markup {
+    let samples = all.first().map_or(1, |r| r.samples);
+    let se = error_of(samples * 4 / 5, samples).round();
+    let widths: Vec<String> = all
+        .iter()
+        .map(|r| format!("{:.3} and {:.3}", r.width_mu[0], r.width_mu[1]))
+        .collect();
+    html! {
+        p.note { "Coverage of exact 90 % intervals in per cent of " (samples)
+            " series (standard error about " (se) "), xi's prior wide, and \
+             the median of log10 B10. Mean width of mu's interval under M0 \
+             and M1, line by line: " (widths.join("; ")) "." }
     }
 }
 
@@ -336,18 +339,16 @@ fn sensitivity_table(found: &Reproduction) -> Markup {
         h2 { "Prior sensitivity (Table 6)" }
         div.wide { table {
             thead { tr {
-                @for heading in ["set", "model", "mu", "xi", "sigma2",
-                    "posterior medians (90 % intervals)"] {
+                @for heading in ["set", "priors of mu, xi, sigma2",
+                    "posterior median (90 % interval)"] {
                     th scope="col" { (heading) }
                 }
             } }
             tbody { @for s in &found.sensitivity { tr {
-                td { (s.set) }
-                td { (s.which.name()) }
-                td { (s.priors.mu) }
-                td { (s.priors.xi) }
-                td { (s.priors.sigma2) }
-                td.name { @for (name, [low, middle, high]) in &s.quantiles {
+                td { (s.set) ", " (s.which.name()) }
+                td { @for prior in [s.priors.mu, s.priors.xi, s.priors.sigma2]
+                    { div { (prior) } } }
+                td { @for (name, [low, middle, high]) in &s.quantiles {
                     div { (format!(
                         "{name} {} ({} to {})",
                         three(*middle), three(*low), three(*high)
@@ -355,7 +356,10 @@ fn sensitivity_table(found: &Reproduction) -> Markup {
                 } }
             } } }
         } }
-        p.note { "The first series. The paper does not define its vague \
+        p.note { "The first series; largest R-hat "
+            (format!("{:.3}", found.sensitivity.iter()
+                .map(|s| s.rhat).fold(1.0, f64::max)))
+            ". The paper does not define its vague \
                   priors: here they are uniform, over 0 to 2, 0 to 20 000 \
                   m/s² and 0 to 1000 m²/s². Its set 6 names an inverse gamma \
                   prior for xi, taken for a slip of the column: xi's \

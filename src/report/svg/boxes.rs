@@ -13,7 +13,8 @@ pub struct Boxes {
     pub label: String,
     /// A value to compare with, drawn across.
     pub truth: Option<f64>,
-    /// What each box is called, and its sample.
+    /// What each box is called, a line for each part before a comma, and its
+    /// sample.
     pub samples: Vec<(String, Vec<f64>)>,
 }
 
@@ -91,8 +92,10 @@ fn draw(canvas: &mut Canvas, frame: Frame, y: Scale, panel: &Boxes) {
     for (i, (label, sample)) in panel.samples.iter().enumerate() {
         let middle = i as f64 + 0.5;
         let (x, _) = axes.at(middle, y.low);
-        let below = (x, frame.bottom + 6.0 + FONT);
-        canvas.text(below, Anchor::Middle, INK, label);
+        for (line, part) in label.split(", ").enumerate() {
+            let below = frame.bottom + 6.0 + FONT * (1.0 + 1.1 * line as f64);
+            canvas.text((x, below), Anchor::Middle, INK, part);
+        }
         let sorted = sorted(sample);
         if sorted.is_empty() {
             continue;
