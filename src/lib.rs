@@ -72,7 +72,7 @@
 //! | [`mod@model`] | one run of a model, asked in different ways |
 //! | [`infer`], [`predict`] | backends; predictions |
 //! | [`io`], [`report`] | event files in; tables, pictures and pages out |
-//! | [`calibrate`] | a whole calibration |
+//! | [`calibrate`], [`sbc`] | a whole calibration; whether inference can be trusted |
 //! | [`mod@reproduce`] | the paper's study, computed again |
 //! | [`cli`] | the command: nothing below it prints |
 //!
@@ -98,6 +98,7 @@ pub mod prelude;
 pub mod prior;
 pub mod report;
 pub mod reproduce;
+pub mod sbc;
 pub mod scalar;
 pub mod seed;
 

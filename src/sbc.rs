@@ -1,0 +1,122 @@
+//! Simulation-based calibration: is the inference right about what it does
+//! not know?
+//!
+//! Parameters drawn from the prior, a recording simulated with them, the
+//! posterior of that recording: the true value's rank among the posterior
+//! draws is uniform if model and backend are right (Talts, Betancourt,
+//! Simpson, Vehtari, Gelman 2018). Whatever is wrong with either shows as
+//! ranks that are not.
+
+use rayon::prelude::*;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use crate::error::{Error, Result};
+use crate::infer::{Backend, Progress, Quiet, infer};
+use crate::model::{Model, Posterior};
+use crate::observe::Series;
+use crate::predict::simulate;
+use crate::seed::Seed;
+
+/// How many posterior draws a value is ranked among: ranks 0 to 99.
+const AMONG: usize = 99;
+/// How many bins the ranks are counted in.
+const BINS: usize = 10;
+
+/// The ranks of true values among posterior draws.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ranks {
+    /// The parameters' names.
+    pub names: Vec<String>,
+    /// Of each parameter the ranks, 0 to 99, one for each replication.
+    pub ranks: Vec<Vec<usize>>,
+}
+
+impl Ranks {
+    /// How many ranks of a parameter fall into each tenth.
+    pub fn histogram(&self, parameter: usize) -> [usize; BINS] {
+        let mut counts = [0; BINS];
+        for rank in &self.ranks[parameter] {
+            counts[(rank * BINS / (AMONG + 1)).min(BINS - 1)] += 1;
+        }
+        counts
+    }
+
+    /// The p-value, by chi-squared, of ranks so uneven if all were right.
+    pub fn p(&self, parameter: usize) -> f64 {
+        let counts = self.histogram(parameter);
+        let expected = self.ranks[parameter].len() as f64 / BINS as f64;
+        let statistic: f64 = counts
+            .iter()
+            .map(|n| (*n as f64 - expected).powi(2) / expected)
+            .sum();
+        let law = ChiSquared::new((BINS - 1) as f64);
+        law.map_or(f64::NAN, |law| law.sf(statistic))
+    }
+}
+
+/// Ranks true values over a number of replications: `model` says where
+/// parameters and recordings come from, `fitted` makes the model of a
+/// simulated recording. Both are the same model unless a wrong one is to be
+/// caught.
+///
+/// # Errors
+/// An improper prior, a backend without draws, or a model that fails.
+pub fn ranks(
+    model: &dyn Model,
+    fitted: &(dyn Fn(Vec<Series>) -> Result<Box<dyn Model>> + Sync),
+    backend: &dyn Backend,
+    replications: usize,
+    seed: Seed,
+    progress: &dyn Progress,
+) -> Result<Ranks> {
+    let prior = Posterior::new(model)?;
+    prior.require_proper("simulation-based calibration")?;
+    let names = prior.parameters().iter().map(|p| p.name.clone()).collect();
+    let rows = (0..replications as u64)
+        .into_par_iter()
+        .map(|i| {
+            let row = replication(&prior, fitted, backend, seed.child(i));
+            progress.advance(1);
+            row
+        })
+        .collect::<Result<Vec<_>>>()?;
+    let ranks = (0..prior.dimension())
+        .map(|i| rows.iter().map(|row| row[i]).collect())
+        .collect();
+    Ok(Ranks { names, ranks })
+}
+
+/// The rank of each parameter's true value in one replication.
+fn replication(
+    prior: &Posterior<'_>,
+    fitted: &dyn Fn(Vec<Series>) -> Result<Box<dyn Model>>,
+    backend: &dyn Backend,
+    seed: Seed,
+) -> Result<Vec<usize>> {
+    let truth = drawn(prior, seed.child(0))?;
+    let seen = simulate(prior.model(), &truth, seed.child(1))?;
+    let model = fitted(seen)?;
+    let posterior = Posterior::new(model.as_ref())?;
+    let found = infer(backend, &posterior, seed.child(2), &Quiet)?;
+    let draws = found.draws.ok_or_else(|| {
+        Error::input(format!("backend {} yields no draws", backend.name()))
+    })?;
+    let rows = draws.thinned(AMONG);
+    let below = |i: usize| rows.iter().filter(|row| row[i] < truth[i]).count();
+    Ok((0..truth.len()).map(below).collect())
+}
+
+/// How many draws from the prior may have no flow before it is given up.
+const REDRAWS: usize = 10_000;
+
+/// Parameters from the prior for which there is a flow.
+fn drawn(prior: &Posterior<'_>, seed: Seed) -> Result<Vec<f64>> {
+    let mut rng = seed.rng();
+    for _ in 0..REDRAWS {
+        let (density, found) = prior.draw_prior(&mut rng)?;
+        if density.rejected.is_none() {
+            return Ok(found.natural);
+        }
+    }
+    Err(Error::inference("no draw from the prior has a flow"))
+}
