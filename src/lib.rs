@@ -71,7 +71,7 @@
 //! | [`observe`] | events, series, and from the motion to what was measured |
 //! | [`mod@model`] | one run of a model, asked in different ways |
 //! | [`infer`], [`predict`] | backends; predictions |
-//! | [`io`], [`report`] | event files in; tables, pictures and pages out |
+//! | [`elpd`], [`io`], [`report`] | prediction of what was left out; event files in; tables, pictures and pages out |
 //! | [`calibrate`] | a whole calibration |
 //! | [`cli`] | the command: nothing below it prints |
 //!
@@ -85,6 +85,7 @@ pub mod cli;
 pub mod context;
 pub mod declared;
 pub mod draws;
+pub mod elpd;
 pub mod error;
 pub mod infer;
 pub mod io;
