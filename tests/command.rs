@@ -224,12 +224,10 @@ fn models_are_compared_by_their_predictions() {
     let output = couloir(&[&arguments[..], &["--json"]].concat());
     let json: Value = serde_json::from_str(&printed(&output)).unwrap();
     for (key, values) in [("loo", 21), ("lfo", 9)] {
-        let parts: Vec<_> =
-            (0..2).map(|i| &json["models"][i][key]).collect();
+        let parts: Vec<_> = (0..2).map(|i| &json["models"][i][key]).collect();
         assert_eq!(parts[0]["values"], values);
-        let of = |i: usize, what: &str| {
-            parts[i][what]["value"].as_f64().unwrap()
-        };
+        let of =
+            |i: usize, what: &str| parts[i][what]["value"].as_f64().unwrap();
         let apart = of(0, "elpd") - of(1, "elpd");
         let told = of(0, "difference") - of(1, "difference");
         assert!((apart - told).abs() < 1e-9, "{apart} {told}");
