@@ -23,11 +23,11 @@ model! {
 fn or<K: Kind>(unknown: &[Real<K>], given: f64) -> Real<K> {
     unknown.first().copied().unwrap_or(given.into())
 }
-fn read(text: &String) -> Result<Event> {
+fn read(text: &str) -> Result<Event> {
     let (folder, far) = text.split_once('=').unzip();
     let event = io::load(folder.unwrap_or(text).as_ref(), &Laws::default())?;
     let Some(far) = far else { return Ok(event.event) };
-    let far = far.parse().map_err(|_| Error::input("FOLDER=METRES"))?;
+    let far = far.parse().map_err(|_| Error::input("not FOLDER=METRES"))?;
     let end = event.event.velocity.times().last().copied();
     let far = Series::position(end.into_iter().collect(), vec![far])?;
     event.event.with_recording(far)
@@ -44,7 +44,7 @@ fn synthetic() -> Result<Vec<Event>> {
 }
 fn main() -> Result<()> {
     let given: Vec<String> = std::env::args().skip(1).collect(); // 1. The data
-    let events = given.iter().map(read).collect::<Result<Vec<_>>>()?;
+    let events = given.iter().map(|g| read(g)).collect::<Result<Vec<_>>>()?;
     let events = if given.is_empty() { synthetic()? } else { events };
     for (laws, unknown) in [(1, 0), (events.len(), 0), (events.len(), 1)] {
         let model = Together::new(events.clone(), laws, unknown);
