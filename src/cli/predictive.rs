@@ -213,13 +213,13 @@ fn doubtful(model: &Predicted<'_>) -> String {
         );
     }
     let mend = match model.ahead {
-        None => "; look at those values, or use --lfo, which fits again there",
+        None => "; look at those values, or use --lfo, which fits again",
         Some(_) => "",
     };
     format!(
-        "Warning, {name}: {high} of {all} values pull so hard on the fit \
-         (Pareto k above 0.7, the largest {k:.2}) that it cannot be known \
-         without fitting again how they are predicted without themselves: \
+        "Warning, {name}: at {high} of {all} values the fit leans on the \
+         value itself (Pareto k above 0.7, the largest {k:.2}); how it is \
+         predicted without is not known unless the model is fitted again. \
          elpd is uncertain, most likely too high{mend}."
     )
 }
