@@ -40,7 +40,7 @@
 //! Another law is another word in that line (`Coulomb { mu: .. }`), or a sum
 //! (`Coulomb { .. } + Turbulent { .. }`); correlated errors are
 //! `Ar { phi: [Uniform(-1.0, 1.0)], sigma2: .. }`. The whole grammar is told
-//! at [`model!`], and `examples/` walks through it in eight steps.
+//! at [`model!`], and `examples/` walks through it in nine steps.
 //!
 //! # The nouns
 //!
@@ -71,7 +71,7 @@
 //! | [`observe`] | events, series, and from the motion to what was measured |
 //! | [`mod@model`] | one run of a model, asked in different ways |
 //! | [`infer`], [`predict`] | backends; predictions |
-//! | [`io`], [`report`] | event files in; tables, pictures and pages out |
+//! | [`elpd`], [`io`], [`report`] | prediction of what was left out; event files in; tables, pictures and pages out |
 //! | [`calibrate`], [`sbc`] | a whole calibration; whether inference can be trusted |
 //! | [`mod@reproduce`] | the paper's study, computed again |
 //! | [`cli`] | the command: nothing below it prints |
@@ -86,6 +86,7 @@ pub mod cli;
 pub mod context;
 pub mod declared;
 pub mod draws;
+pub mod elpd;
 pub mod error;
 pub mod infer;
 pub mod io;

@@ -200,6 +200,45 @@ fn models_are_compared_by_their_evidence() {
 }
 
 #[test]
+fn models_are_compared_by_their_predictions() {
+    let arguments = [
+        "compare",
+        REFERENCE,
+        "--model",
+        "voellmy, iid",
+        "--model",
+        "voellmy, ar(1)",
+        "--draws",
+        "1000",
+        "--lfo",
+        "--lfo-from",
+        "12",
+    ];
+    let text = printed(&couloir(&arguments));
+    for line in text.lines() {
+        assert!(line.chars().count() <= 80, "{line}");
+    }
+    for part in ["one left out", "one ahead", "k > 0.7", "--lfo asks"] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let output = couloir(&[&arguments[..], &["--json"]].concat());
+    let json: Value = serde_json::from_str(&printed(&output)).unwrap();
+    for (key, values) in [("loo", 21), ("lfo", 9)] {
+        let parts: Vec<_> = (0..2).map(|i| &json["models"][i][key]).collect();
+        assert_eq!(parts[0]["values"], values);
+        let of =
+            |i: usize, what: &str| parts[i][what]["value"].as_f64().unwrap();
+        let apart = of(0, "elpd") - of(1, "elpd");
+        let told = of(0, "difference") - of(1, "difference");
+        assert!((apart - told).abs() < 1e-9, "{apart} {told}");
+    }
+    assert_eq!(json["models"][0]["lfo"]["from"], 12);
+    let late = couloir(&[&arguments[..10], &["21"]].concat());
+    assert_eq!(late.status.code(), Some(2));
+    assert!(said(&late).contains("nothing to predict"), "{}", said(&late));
+}
+
+#[test]
 fn a_simulation_has_the_values_it_was_given() {
     let output = couloir(&[
         "simulate",

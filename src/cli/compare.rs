@@ -1,16 +1,20 @@
-//! `couloir compare`: models of one event by their evidence.
+//! `couloir compare`: models of one event by their evidence, and by how well
+//! they predict.
 
 use clap::Args;
 use serde_json::json;
 
 use super::calibrate::{pretty, wrapped};
+use super::predictive::{self, Predicted};
 use super::progress::Told;
 use super::study::assemble;
-use super::{Output, Subject, Work, backend_name, width};
+use super::{Output, Subject, Work, at_least_one, backend_name, width};
+use crate::draws::{Lfo, Loo};
+use crate::elpd;
 use crate::error::{Error, Result};
-use crate::infer::{Evidence, backend, infer};
+use crate::infer::{Backend, Evidence, Inference, backend, infer};
 use crate::io::write_all;
-use crate::model::Posterior;
+use crate::model::{Assembled, Posterior};
 use crate::physics::friction::Laws;
 use crate::seed::Seed;
 
@@ -27,6 +31,14 @@ pub(super) struct Arguments {
     /// Backend with an evidence: smc, importance or reciprocal
     #[arg(long, default_value = "smc", value_parser = backend_name)]
     backend: String,
+    /// Predict each value from those before it as well (leave-future-out),
+    /// fitting again where need be
+    #[arg(long)]
+    lfo: bool,
+    /// How many values --lfo takes as known at first; a third of them where
+    /// not given
+    #[arg(long, value_name = "N", requires = "lfo", value_parser = at_least_one)]
+    lfo_from: Option<usize>,
     #[command(flatten)]
     output: Output,
 }
@@ -36,8 +48,45 @@ struct Compared {
     friction: String,
     noise: String,
     evidence: Evidence,
+    loo: Loo,
+    lfo: Option<Lfo>,
     simulations: u64,
     warnings: Vec<String>,
+}
+
+impl Compared {
+    fn name(&self) -> String {
+        format!("{}, {}", self.friction, self.noise)
+    }
+
+    fn document(&self, first: &Self) -> serde_json::Value {
+        let (factor, se) = log10_factor(self, first);
+        json!({
+            "friction": self.friction,
+            "noise": self.noise,
+            "log_evidence": {
+                "value": self.evidence.log,
+                "se": self.evidence.se,
+                "method": self.evidence.method,
+            },
+            "log10_bayes_factor": {"value": factor, "se": se},
+            "simulations": self.simulations,
+            "warnings": self.warnings,
+        })
+    }
+}
+
+/// By leave-one-out.
+fn left_out(compared: &[Compared]) -> Vec<Predicted<'_>> {
+    compared.iter().map(|c| Predicted::left_out(c.name(), &c.loo)).collect()
+}
+
+/// By leave-future-out; nothing where it was not asked for.
+fn ahead(compared: &[Compared]) -> Vec<Predicted<'_>> {
+    compared
+        .iter()
+        .filter_map(|c| Some(Predicted::ahead(c.name(), c.lfo.as_ref()?)))
+        .collect()
 }
 
 impl Arguments {
@@ -52,7 +101,7 @@ impl Arguments {
         let compared = self
             .models
             .iter()
-            .map(|text| self.evidence(text, laws, &told))
+            .map(|text| self.compared(text, laws, &told))
             .collect::<Result<Vec<_>>>()?;
         drop(told);
         let event = self.subject.load(laws)?.event.name().to_owned();
@@ -66,42 +115,79 @@ impl Arguments {
         Ok(tell(&event, &compared))
     }
 
-    fn evidence(
+    fn compared(
         &self,
         text: &str,
         laws: &Laws,
         told: &Told,
     ) -> Result<Compared> {
+        let model = self.model(text, laws)?;
+        let posterior = Posterior::new(&model)?;
+        let backend = backend(&self.backend, &self.work.effort()?)?;
+        let seed = Seed::new(self.work.seed);
+        let found = infer(backend.as_ref(), &posterior, seed, told)?;
+        let (evidence, loo) = self.judged(&found, &posterior)?;
+        let lfo = self.predicted_ahead(&model, backend.as_ref(), told)?;
+        Ok(Compared {
+            friction: model.friction(),
+            noise: model.noise(),
+            evidence,
+            loo,
+            lfo,
+            simulations: found.cost.simulations,
+            warnings: found.warnings,
+        })
+    }
+
+    /// The model that an argument names.
+    fn model(&self, text: &str, laws: &Laws) -> Result<Assembled> {
         let (friction, noise) = text.split_once(',').ok_or_else(|| {
             Error::input(format!(
                 "--model {text:?}: expected a friction law and a noise with a \
                  comma between, such as \"voellmy, ar(1)\""
             ))
         })?;
-        let model = assemble(
+        assemble(
             self.subject.load(laws)?,
             laws,
             Some(friction.trim().to_owned()),
             Some(noise.trim().to_owned()),
-        )?;
-        let posterior = Posterior::new(&model)?;
-        let backend = backend(&self.backend, &self.work.effort()?)?;
-        let seed = Seed::new(self.work.seed);
-        let found = infer(backend.as_ref(), &posterior, seed, told)?;
-        let evidence = found.evidence.ok_or_else(|| {
+        )
+    }
+
+    /// The evidence and the leave-one-out prediction of what was found.
+    fn judged(
+        &self,
+        found: &Inference,
+        posterior: &Posterior<'_>,
+    ) -> Result<(Evidence, Loo)> {
+        let both = found.evidence.clone().zip(found.draws.as_ref());
+        let (evidence, draws) = both.ok_or_else(|| {
             Error::input(format!(
                 "backend {} gives no evidence; use smc, importance or \
                  reciprocal",
                 self.backend
             ))
         })?;
-        Ok(Compared {
-            friction: model.friction(),
-            noise: model.noise(),
-            evidence,
-            simulations: found.cost.simulations,
-            warnings: found.warnings,
-        })
+        Ok((evidence, elpd::leave_one_out(posterior, draws)?))
+    }
+
+    /// Leave-future-out, where it is asked for.
+    fn predicted_ahead(
+        &self,
+        model: &Assembled,
+        backend: &dyn Backend,
+        told: &Told,
+    ) -> Result<Option<Lfo>> {
+        if !self.lfo {
+            return Ok(None);
+        }
+        let values = model.event().recordings().map(|s| s.len()).sum();
+        let least = self.lfo_from.unwrap_or_else(|| elpd::least_for(values));
+        let seed = Seed::new(self.work.seed).child(1);
+        elpd::leave_future_out(model, backend, least, seed, told)
+            .map(Some)
+            .map_err(|error| error.within("--lfo"))
     }
 
     fn document(
@@ -109,24 +195,15 @@ impl Arguments {
         event: &str,
         compared: &[Compared],
     ) -> serde_json::Value {
-        let models: Vec<_> = compared
-            .iter()
-            .map(|c| {
-                let (factor, se) = log10_factor(c, &compared[0]);
-                json!({
-                    "friction": c.friction,
-                    "noise": c.noise,
-                    "log_evidence": {
-                        "value": c.evidence.log,
-                        "se": c.evidence.se,
-                        "method": c.evidence.method,
-                    },
-                    "log10_bayes_factor": {"value": factor, "se": se},
-                    "simulations": c.simulations,
-                    "warnings": c.warnings,
-                })
-            })
-            .collect();
+        let mut models: Vec<_> =
+            compared.iter().map(|c| c.document(&compared[0])).collect();
+        let (loo, lfo) = (left_out(compared), ahead(compared));
+        for (key, found) in [("loo", loo), ("lfo", lfo)] {
+            let parts = predictive::documents(&found);
+            for (model, part) in models.iter_mut().zip(parts) {
+                model[key] = part;
+            }
+        }
         json!({
             "schema": 1,
             "event": event,
@@ -160,13 +237,30 @@ fn in_words(log10: f64) -> &'static str {
 fn tell(event: &str, compared: &[Compared]) -> String {
     let width = width();
     let mut text = wrapped(event, width);
-    text.push_str(&format!(
+    text.push_str(&table(compared));
+    text.push('\n');
+    for c in &compared[1..] {
+        text.push_str(&wrapped(&verdict(c, &compared[0]), width));
+    }
+    for c in compared {
+        for warning in &c.warnings {
+            let line = format!("Warning, {}: {warning}", c.name());
+            text.push_str(&wrapped(&line, width));
+        }
+    }
+    text.push_str(&predictive::tell(&left_out(compared), width));
+    text.push_str(&predictive::tell(&ahead(compared), width));
+    text
+}
+
+fn table(compared: &[Compared]) -> String {
+    let mut text = format!(
         "\n{:34} {:>20} {:>20}\n",
         "model", "ln evidence", "log10 Bayes factor"
-    ));
+    );
     for c in compared {
         let (factor, se) = log10_factor(c, &compared[0]);
-        let name = format!("{}, {}", c.friction, c.noise);
+        let name = c.name();
         let factor = if std::ptr::eq(c, &compared[0]) {
             "-".to_owned()
         } else {
@@ -181,30 +275,17 @@ fn tell(event: &str, compared: &[Compared]) -> String {
         }
         text.push_str(&format!(" {evidence:>20} {factor:>20}\n"));
     }
-    text.push('\n');
-    for c in &compared[1..] {
-        let (factor, _) = log10_factor(c, &compared[0]);
-        let (for_it, against) =
-            if factor >= 0.0 { (c, &compared[0]) } else { (&compared[0], c) };
-        text.push_str(&wrapped(
-            &format!(
-                "Evidence for {}, {} against {}, {}: {} (Kass and Raftery \
-                 1995).",
-                for_it.friction,
-                for_it.noise,
-                against.friction,
-                against.noise,
-                in_words(factor)
-            ),
-            width,
-        ));
-    }
-    for c in compared {
-        for warning in &c.warnings {
-            let line =
-                format!("Warning, {}, {}: {warning}", c.friction, c.noise);
-            text.push_str(&wrapped(&line, width));
-        }
-    }
     text
+}
+
+fn verdict(model: &Compared, first: &Compared) -> String {
+    let (factor, _) = log10_factor(model, first);
+    let (for_it, against) =
+        if factor >= 0.0 { (model, first) } else { (first, model) };
+    format!(
+        "Evidence for {} against {}: {} (Kass and Raftery 1995).",
+        for_it.name(),
+        against.name(),
+        in_words(factor)
+    )
 }

@@ -7,6 +7,7 @@ mod bench;
 mod calibrate;
 mod compare;
 mod new;
+mod predictive;
 mod progress;
 mod reproduce;
 mod simulate;
@@ -33,7 +34,7 @@ struct Cli {
 enum Command {
     /// Calibrate a friction law from a recording
     Calibrate(calibrate::Arguments),
-    /// Compare models by their evidence
+    /// Compare models by their evidence and by how well they predict
     Compare(compare::Arguments),
     /// Run the motion with given parameter values
     Simulate(simulate::Arguments),

@@ -55,9 +55,25 @@ pub fn loo(log_likelihood: &[Vec<f64>]) -> Option<Loo> {
         pareto_k.push(k);
         in_sample += log_sum_exp(&observed) - (observed.len() as f64).ln();
     }
-    let elpd: f64 = pointwise.iter().sum();
-    let se = (observations as f64 * variance(&pointwise)).sqrt();
+    let (elpd, se) = sum_and_error(&pointwise);
     Some(Loo { elpd, se, p_loo: in_sample - elpd, pointwise, pareto_k })
+}
+
+/// The sum of pointwise parts, and its standard error over observations that
+/// count as independent; the error of one is NaN.
+///
+/// Of two models the parts are those of the same observations: the error of a
+/// difference is that of the sum of their differences, which is smaller than
+/// the two errors together say (Vehtari and others 2017, equation 24).
+///
+/// ```
+/// use couloir::draws::sum_and_error;
+/// let (sum, se) = sum_and_error(&[-1.0, -3.0]);
+/// assert_eq!((sum, se), (-4.0, 2.0));
+/// ```
+pub fn sum_and_error(parts: &[f64]) -> (f64, f64) {
+    let se = (parts.len() as f64 * variance(parts)).sqrt();
+    (parts.iter().sum(), se)
 }
 
 /// The log predictive density of one observation without it, and the shape
@@ -200,7 +216,7 @@ fn pareto_quantile(p: f64, k: f64, scale: f64) -> f64 {
 }
 
 /// The logarithm of a sum of exponentials; minus infinity for no terms.
-fn log_sum_exp(logs: &[f64]) -> f64 {
+pub(super) fn log_sum_exp(logs: &[f64]) -> f64 {
     let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if largest == f64::NEG_INFINITY && !logs.iter().any(|l| l.is_nan()) {
         return largest;

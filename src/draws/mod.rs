@@ -4,7 +4,8 @@
 //! that read nothing but numbers: convergence ([`rhat()`], [`ess_bulk`],
 //! [`between_chains`]), Monte Carlo error ([`mcse_mean`]), marginal summaries
 //! and densities ([`summarise`], [`density`]), tests of residuals
-//! ([`ljung_box`], [`shapiro_wilk`]) and predictive comparison ([`loo()`]).
+//! ([`ljung_box`], [`shapiro_wilk`]) and predictive comparison ([`loo()`],
+//! [`leave_future_out`]).
 //!
 //! A figure that does not exist (of an empty, constant or non-finite sample)
 //! is NaN or `None`, never a panic.
@@ -30,6 +31,7 @@ use crate::error::{Error, Result};
 mod ess;
 mod kde;
 mod kolmogorov;
+mod lfo;
 mod loo;
 mod residual;
 mod rhat;
@@ -44,7 +46,10 @@ pub use kolmogorov::{
     ChainComparison, KolmogorovSmirnov, between_chains, kolmogorov_survival,
     two_sample,
 };
-pub use loo::{Loo, generalised_pareto, k_threshold, loo, psis};
+pub use lfo::{Lfo, leave_future_out};
+pub use loo::{
+    Loo, generalised_pareto, k_threshold, loo, psis, sum_and_error,
+};
 pub use residual::{
     LjungBox, ShapiroWilk, autocorrelation, ljung_box, shapiro_wilk,
 };

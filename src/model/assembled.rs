@@ -10,7 +10,7 @@ use super::program::Program;
 use super::run::{Label, Run};
 use crate::block::{Field, List};
 use crate::error::{Error, Outcome, Result, Stop};
-use crate::noise::{NoiseEntry, Spacing};
+use crate::noise::{self, NoiseEntry, Spacing};
 use crate::observe::{Event, Quantity};
 use crate::physics::friction::LawSum;
 use crate::physics::{Rest, State, rest, sample};
@@ -96,6 +96,21 @@ impl Assembled {
                 )))
             }
         }
+    }
+
+    /// The same model of the first `count` values of its recording: the same
+    /// parameters with the same priors.
+    ///
+    /// # Errors
+    /// As [`Event::first`].
+    pub fn first(&self, count: usize) -> Result<Self> {
+        Ok(Self {
+            event: self.event.first(count)?,
+            friction: self.friction.clone(),
+            noise: noise::parse(&self.noise.name())?,
+            unknowns: self.unknowns.clone(),
+            laws: self.laws,
+        })
     }
 
     /// The event.

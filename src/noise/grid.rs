@@ -47,6 +47,24 @@ impl Grid {
         Self { times, step, spacing, standard_errors }
     }
 
+    /// The first `count` times on the same grid: step and spacing stay those
+    /// of all times, so that the parameters of a noise mean the same.
+    #[must_use]
+    pub fn first(&self, count: usize) -> Self {
+        let count = count.min(self.len());
+        let spacing = match &self.spacing {
+            Spacing::Gaps(steps) => Spacing::Gaps(steps[..count].to_vec()),
+            other => other.clone(),
+        };
+        let errors = self.standard_errors.as_ref();
+        Self {
+            times: self.times[..count].to_vec(),
+            step: self.step,
+            spacing,
+            standard_errors: errors.map(|all| all[..count].to_vec()),
+        }
+    }
+
     /// The times \[s\].
     pub fn times(&self) -> &[f64] {
         &self.times

@@ -242,6 +242,21 @@ impl Event {
         Ok(event)
     }
 
+    /// The same event with the first `count` values of its one recording.
+    ///
+    /// # Errors
+    /// No recording or several, no value, or more than there are.
+    pub fn first(&self, count: usize) -> Result<Self> {
+        let mut all = self.recordings();
+        let (Some(one), None) = (all.next(), all.next()) else {
+            return Err(Error::input(
+                "the first values of an event are those of its one \
+                 recording, and this event has none or several",
+            ));
+        };
+        self.with_recording(one.first(count)?)
+    }
+
     fn check_that_it_moves(&self) -> Result<()> {
         let piece = &self.track.pieces()[self.track.piece_at(self.distance)];
         if self.speed == 0.0 && piece.pull <= 0.0 {

@@ -219,6 +219,31 @@ impl Series {
     }
 }
 
+impl Series {
+    /// The first `count` values, as if the recording had ended there.
+    ///
+    /// # Errors
+    /// No value, or more than there are.
+    pub fn first(&self, count: usize) -> Result<Self> {
+        if count == 0 || count > self.len() {
+            return Err(Error::input(format!(
+                "the first {count} values of a {} series of {}; expected \
+                 from 1 to all",
+                self.quantity,
+                self.len()
+            )));
+        }
+        Ok(Self {
+            quantity: self.quantity,
+            window: self.window,
+            grid: self.grid.first(count),
+            values: self.values[..count].to_vec(),
+            at: Vec::new(),
+            since: Vec::new(),
+        })
+    }
+}
+
 impl AsRef<Series> for Series {
     fn as_ref(&self) -> &Series {
         self
