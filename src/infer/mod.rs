@@ -9,6 +9,8 @@ mod importance;
 mod map;
 mod mh;
 mod mixture;
+#[cfg(feature = "nuts")]
+mod nuts;
 mod reciprocal;
 mod smc;
 mod told;
@@ -17,6 +19,8 @@ pub use importance::ImportanceSampling;
 pub use map::{Map, Mode};
 pub use mh::{MetropolisHastings, Proposal};
 pub use mixture::Mixture;
+#[cfg(feature = "nuts")]
+pub use nuts::Nuts;
 pub use reciprocal::ReciprocalImportance;
 pub use smc::Smc;
 
@@ -155,6 +159,12 @@ pub const BACKENDS: &[Entry] = &[
         name: "random-walk",
         about: "Metropolis-Hastings of the paper, tuned covariance",
         make: |effort| Box::new(MetropolisHastings::random_walk(effort)),
+    },
+    #[cfg(feature = "nuts")]
+    Entry {
+        name: "nuts",
+        about: "no-U-turn sampler on the real line, exact gradient",
+        make: |effort| Box::new(Nuts::of_effort(effort)),
     },
     Entry {
         name: "smc",
