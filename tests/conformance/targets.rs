@@ -317,8 +317,8 @@ pub(crate) fn bounds() -> Target {
     }
 }
 
-/// Times \[s\] and speeds \[m/s\] down 35 degrees under mu = 0.31, with made-up
-/// errors.
+/// Times \[s\] and speeds \[m/s\] down 35 degrees under mu = 0.31, with
+/// made-up errors.
 fn speeds() -> (Vec<f64>, Vec<f64>) {
     let errors = [0.4, -1.1, 0.9, 0.2, -0.6, 1.5, -0.3, -0.9, 0.7, 0.1];
     let (sin, cos) = 35_f64.to_radians().sin_cos();
