@@ -80,6 +80,11 @@ fn seeded(
     infer(backend.as_ref(), &posterior, Seed::new(seed), &Quiet)
 }
 
+/// Whether an error is within a tolerance; a NaN is not.
+fn near(error: f64, tolerance: f64) -> bool {
+    error.abs() < tolerance
+}
+
 /// What is wrong with what was found; empty for a sound backend.
 fn complaints(found: &Inference, target: &Target) -> Vec<String> {
     let mut wrong = Vec::new();
@@ -89,14 +94,14 @@ fn complaints(found: &Inference, target: &Target) -> Vec<String> {
     if let (Some(e), Some(known)) = (&found.evidence, target.log_evidence) {
         // A backend may say that its error is not to be believed.
         let error = (e.log - known).abs();
-        if found.warnings.is_empty() && !(error < ERRORS * e.se) {
+        if found.warnings.is_empty() && !near(error, ERRORS * e.se) {
             let (log, se) = (e.log, e.se);
             wrong.push(format!("evidence {log} +- {se}, expected {known}"));
         }
     }
     if let (Some(mode), Some(top)) = (&found.mode, target.top) {
         let short = top - mode.log_density;
-        if !(short.abs() < 1e-3) {
+        if !near(short, 1e-3) {
             wrong.push(format!("a mode {short} below the top {top}"));
         }
     }
@@ -110,7 +115,7 @@ fn of_draws(draws: &Draws, target: &Target) -> Vec<String> {
         let (mean, se) = mean_of(draws, |row| (check.of)(row));
         let error = mean - check.mean;
         let tolerance = ERRORS * se.hypot(check.se);
-        if !(error.abs() < tolerance) {
+        if !near(error, tolerance) {
             wrong.push(format!(
                 "{}: mean {mean}, expected {} +- {tolerance}",
                 check.what, check.mean
@@ -121,9 +126,9 @@ fn of_draws(draws: &Draws, target: &Target) -> Vec<String> {
         let (variance, se) = mean_of(draws, squared);
         let far = match check.spread {
             Spread::Any => false,
-            Spread::Sd(sd) => !((variance - sd * sd).abs() < ERRORS * se),
+            Spread::Sd(sd) => !near(variance - sd * sd, ERRORS * se),
             Spread::About(sd) => {
-                !((variance.sqrt() / sd - 1.0).abs() < SD_TOLERANCE)
+                !near(variance.sqrt() / sd - 1.0, SD_TOLERANCE)
             }
         };
         if far {

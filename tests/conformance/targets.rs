@@ -26,10 +26,13 @@ pub(crate) struct Target {
     pub(crate) top: Option<f64>,
 }
 
+/// A function of a draw.
+type Of = dyn Fn(&[f64]) -> f64 + Sync;
+
 /// A function of the parameters whose mean is known.
 pub(crate) struct Check {
     pub(crate) what: String,
-    pub(crate) of: Box<dyn Fn(&[f64]) -> f64 + Sync>,
+    pub(crate) of: Box<Of>,
     pub(crate) mean: f64,
     /// The standard error of that, where it is itself from draws.
     pub(crate) se: f64,
