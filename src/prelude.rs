@@ -2,6 +2,8 @@
 
 pub use crate::block::{Block, Field};
 pub use crate::error::{Error, Outcome, Result, Stop};
+#[cfg(feature = "nuts")]
+pub use crate::infer::Nuts;
 pub use crate::infer::{
     Backend, Effort, ImportanceSampling, Inference, Map, MetropolisHastings,
     Quiet, ReciprocalImportance, Smc, infer,

@@ -253,12 +253,14 @@ fn a_seed_gives_the_same_bits_on_any_number_of_threads() {
     let effort = Effort { chains: 3, draws: 300, warmup: 200 };
     let smc = Smc { particles: 200, ..Smc::default() };
     let importance = ImportanceSampling { draws: 1000, pilot: smc.clone() };
-    let backends: [&dyn Backend; 4] = [
-        &MetropolisHastings::adaptive(&effort),
-        &MetropolisHastings::random_walk(&effort),
-        &smc,
-        &importance,
-    ];
+    let walk = MetropolisHastings::random_walk(&effort);
+    let adaptive = MetropolisHastings::adaptive(&effort);
+    let mut backends: Vec<&dyn Backend> =
+        vec![&adaptive, &walk, &smc, &importance];
+    #[cfg(feature = "nuts")]
+    let nuts = couloir::infer::Nuts::of_effort(&effort);
+    #[cfg(feature = "nuts")]
+    backends.push(&nuts);
     for backend in backends {
         let on = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new()

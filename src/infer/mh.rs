@@ -183,7 +183,7 @@ pub(super) fn best_start(
 }
 
 /// Turns rows on the real line into rows of the parameters as named.
-fn to_natural(
+pub(super) fn to_natural(
     posterior: &Posterior<'_>,
     rows: &mut [f64],
     dimension: usize,

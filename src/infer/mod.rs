@@ -10,6 +10,8 @@ mod map;
 mod mh;
 mod mixture;
 mod quadrature;
+#[cfg(feature = "nuts")]
+mod nuts;
 mod reciprocal;
 mod smc;
 mod told;
@@ -19,6 +21,8 @@ pub use map::{Map, Mode};
 pub use mh::{MetropolisHastings, Proposal};
 pub use mixture::Mixture;
 pub use quadrature::{LEVELS, Marginal, Quadrature};
+#[cfg(feature = "nuts")]
+pub use nuts::Nuts;
 pub use reciprocal::ReciprocalImportance;
 pub use smc::Smc;
 
@@ -160,6 +164,12 @@ pub const BACKENDS: &[Entry] = &[
         name: "random-walk",
         about: "Metropolis-Hastings of the paper, tuned covariance",
         make: |effort| Box::new(MetropolisHastings::random_walk(effort)),
+    },
+    #[cfg(feature = "nuts")]
+    Entry {
+        name: "nuts",
+        about: "no-U-turn sampler on the real line, exact gradient",
+        make: |effort| Box::new(Nuts::of_effort(effort)),
     },
     Entry {
         name: "smc",

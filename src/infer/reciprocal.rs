@@ -8,6 +8,7 @@
 
 use nalgebra::DVector;
 use rayon::prelude::*;
+use statrs::function::erf::erfc;
 
 use super::mh::value;
 use super::{
@@ -60,9 +61,36 @@ impl ReciprocalImportance {
                  stated; use smc or importance"
             ));
         }
+        let outside = share_outside(posterior, draws);
+        if outside > se {
+            warnings.push(format!(
+                "{:.1} % of the normal density of appendix B lies outside the \
+                 priors' bounds: the log evidence is too high by about {:.3}; \
+                 use smc or importance",
+                100.0 * outside,
+                -(-outside.min(0.999)).ln_1p()
+            ));
+        }
         let method = "reciprocal importance sampling (appendix B)".into();
         Ok((Evidence { log: -(mean.ln() + top), se, method }, warnings))
     }
+}
+
+/// How much of g lies beyond the bounds of the parameters, one by one: there
+/// the posterior has no draws, and what g weighs there is missing from the
+/// mean, which the ratios at the draws cannot show.
+fn share_outside(posterior: &Posterior<'_>, draws: &Draws) -> f64 {
+    let (mean, covariance) = (draws.mean(), draws.covariance());
+    let parameters = posterior.parameters().iter().enumerate();
+    parameters
+        .map(|(i, parameter)| {
+            let width = (2.0 * covariance[(i, i)]).sqrt();
+            let (low, high) = parameter.bounds;
+            let below = erfc((mean[i] - low) / width);
+            let above = erfc((high - mean[i]) / width);
+            0.5 * (below + above)
+        })
+        .sum()
 }
 
 /// ln g - ln(L pi) at every draw, chain by chain.
