@@ -5,6 +5,7 @@
 //! what it cost. Every random number comes from the seed by a fixed path, so
 //! a run is the same to the last bit on any number of threads.
 
+mod bridge;
 mod importance;
 mod map;
 mod mh;
@@ -13,6 +14,7 @@ mod reciprocal;
 mod smc;
 mod told;
 
+pub use bridge::Bridge;
 pub use importance::ImportanceSampling;
 pub use map::{Map, Mode};
 pub use mh::{MetropolisHastings, Proposal};
@@ -165,6 +167,11 @@ pub const BACKENDS: &[Entry] = &[
         name: "importance",
         about: "importance sampling by a Student-t mixture, with evidence",
         make: |effort| Box::new(ImportanceSampling::of_effort(effort)),
+    },
+    Entry {
+        name: "bridge",
+        about: "evidence from chains by bridge sampling",
+        make: |effort| Box::new(Bridge::of_effort(effort)),
     },
     Entry {
         name: "reciprocal",
