@@ -3,8 +3,8 @@
 pub use crate::block::{Block, Field};
 pub use crate::error::{Error, Outcome, Result, Stop};
 pub use crate::infer::{
-    Backend, Effort, ImportanceSampling, Inference, Map, MetropolisHastings,
-    Quiet, ReciprocalImportance, Smc, infer,
+    Backend, Bridge, Effort, ImportanceSampling, Inference, Map,
+    MetropolisHastings, Quiet, ReciprocalImportance, Smc, infer,
 };
 pub use crate::model::{Label, Model, Number, Point, Posterior, Program, Run};
 pub use crate::noise::{Ar, Iid, Student};

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use couloir::draws::{Draws, mcse_quantile, quantile};
 use couloir::infer::{
-    BACKENDS, Backend, Effort, ImportanceSampling, Inference, Map,
+    BACKENDS, Backend, Bridge, Effort, ImportanceSampling, Inference, Map,
     MetropolisHastings, Quiet, Smc, infer,
 };
 use couloir::io::load;
@@ -170,6 +170,16 @@ fn the_evidence_by_importance_sampling() {
     }
 }
 
+#[test]
+fn the_evidence_by_bridge_sampling() {
+    let on_chains = Bridge::default();
+    let on_particles = Bridge { sampler: Smc::default(), draws: 20_000 };
+    for seed in 1..=2 {
+        assert_evidence(&on_chains, seed);
+        assert_evidence(&on_particles, seed);
+    }
+}
+
 /// Every backend that the command can name, a new one unasked: draws by
 /// their quantiles, an evidence by its own error unless the backend warns of
 /// it, a mode by its height.
@@ -207,8 +217,8 @@ fn every_listed_backend_agrees_with_the_quadrature() {
 fn the_errors_of_the_evidence_are_right() {
     let expected =
         reference()["piecewise_linear_track"]["lnZ1"].as_f64().unwrap();
-    let backends: [&dyn Backend; 2] =
-        [&Smc::default(), &ImportanceSampling::default()];
+    let backends: [&dyn Backend; 3] =
+        [&Smc::default(), &ImportanceSampling::default(), &Bridge::default()];
     for backend in backends {
         let squares: f64 = (0..40)
             .map(|seed| {
@@ -227,11 +237,13 @@ fn a_seed_gives_the_same_bits_on_any_number_of_threads() {
     let effort = Effort { chains: 3, draws: 300, warmup: 200 };
     let smc = Smc { particles: 200, ..Smc::default() };
     let importance = ImportanceSampling { draws: 1000, pilot: smc.clone() };
-    let backends: [&dyn Backend; 4] = [
+    let bridge = Bridge { sampler: smc.clone(), draws: 1000 };
+    let backends: [&dyn Backend; 5] = [
         &MetropolisHastings::adaptive(&effort),
         &MetropolisHastings::random_walk(&effort),
         &smc,
         &importance,
+        &bridge,
     ];
     for backend in backends {
         let on = |threads: usize| {

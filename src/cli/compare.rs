@@ -24,7 +24,7 @@ pub(super) struct Arguments {
     models: Vec<String>,
     #[command(flatten)]
     work: Work,
-    /// Backend with an evidence: smc, importance or reciprocal
+    /// Backend with an evidence: smc, importance, bridge or reciprocal
     #[arg(long, default_value = "smc", value_parser = backend_name)]
     backend: String,
     #[command(flatten)]
@@ -90,8 +90,8 @@ impl Arguments {
         let found = infer(backend.as_ref(), &posterior, seed, told)?;
         let evidence = found.evidence.ok_or_else(|| {
             Error::input(format!(
-                "backend {} gives no evidence; use smc, importance or \
-                 reciprocal",
+                "backend {} gives no evidence; use smc, importance, bridge \
+                 or reciprocal",
                 self.backend
             ))
         })?;
