@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use super::mixture::Mixture;
 use super::smc::{Base, Particle, population};
 use super::{
-    Backend, Effort, Evidence, Inference, MetropolisHastings, Progress,
+    Backend, Effort, Evidence, Inference, MetropolisHastings, Progress, Smc,
 };
 use crate::draws::{Draws, ess_mean, rhat};
 use crate::error::{Error, Result};
@@ -23,16 +23,19 @@ use crate::seed::Seed;
 
 /// Bridge sampling on the draws of another backend.
 ///
+/// A mode that no draw has seen is not in the evidence, and where all chains
+/// fell into the same of several, R-hat cannot tell. The command's `bridge`
+/// therefore works on particles.
+///
 /// ```
-/// use couloir::infer::{Bridge, Smc};
+/// use couloir::infer::{Bridge, Effort};
 /// let on_chains = Bridge::default();
-/// let on_particles = Bridge { sampler: Smc::default(), draws: 10_000 };
+/// let on_particles = Bridge::on_particles(&Effort::default());
 /// assert_eq!(on_chains.draws, on_particles.draws);
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bridge<B = MetropolisHastings> {
-    /// What explores the posterior. Chains that keep to different modes are
-    /// warned of; where modes are several, let it be `Smc`.
+    /// What explores the posterior: chains, or the particles of [`Smc`].
     pub sampler: B,
     /// How many draws of the proposal are made.
     pub draws: usize,
@@ -51,6 +54,14 @@ impl Bridge {
             sampler: MetropolisHastings::adaptive(effort),
             draws: (effort.chains * effort.draws / 4).max(1000),
         }
+    }
+}
+
+impl Bridge<Smc> {
+    /// On the particles of sequential Monte Carlo, which keep to every mode.
+    pub fn on_particles(effort: &Effort) -> Self {
+        let draws = Bridge::of_effort(effort).draws;
+        Self { sampler: Smc::of_effort(effort), draws }
     }
 }
 
@@ -315,7 +326,7 @@ mod tests {
 
     use super::*;
     use crate::error::Outcome;
-    use crate::infer::{Quiet, Smc, infer};
+    use crate::infer::{Quiet, infer};
     use crate::model::{Label, Number, Program, Run};
     use crate::prior::AnyPrior;
     use crate::scalar::Real;

@@ -170,8 +170,8 @@ pub const BACKENDS: &[Entry] = &[
     },
     Entry {
         name: "bridge",
-        about: "evidence from chains by bridge sampling",
-        make: |effort| Box::new(Bridge::of_effort(effort)),
+        about: "bridge sampling on particles, with evidence",
+        make: |effort| Box::new(Bridge::on_particles(effort)),
     },
     Entry {
         name: "reciprocal",
