@@ -128,8 +128,8 @@ impl Program for OnePatch {
 fn cases() -> Vec<Case> {
     let case = |index: u64| Case {
         index,
-        drag: index % 2 == 0,
-        smooth: index / 2 % 2 == 0,
+        drag: index.is_multiple_of(2),
+        smooth: (index / 2).is_multiple_of(2),
         correlated: index / 4 % 2 == 1,
         twin: index % 5 == 1 || index % 5 == 3,
     };
