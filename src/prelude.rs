@@ -5,8 +5,8 @@ pub use crate::error::{Error, Outcome, Result, Stop};
 #[cfg(feature = "nuts")]
 pub use crate::infer::Nuts;
 pub use crate::infer::{
-    Backend, Effort, ImportanceSampling, Inference, Map, MetropolisHastings,
-    Quiet, ReciprocalImportance, Smc, infer,
+    Backend, Bridge, Effort, ImportanceSampling, Inference, Map,
+    MetropolisHastings, Quiet, ReciprocalImportance, Smc, infer,
 };
 pub use crate::model::{Label, Model, Number, Point, Posterior, Program, Run};
 pub use crate::noise::{Ar, Iid, Student};

@@ -12,7 +12,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::error::{Error, Result};
 use crate::infer::{Backend, Progress, Quiet, infer};
-use crate::model::{Model, Posterior};
+use crate::model::{Model, Point, Posterior};
 use crate::observe::Series;
 use crate::predict::simulate;
 use crate::seed::Seed;
@@ -25,7 +25,7 @@ const BINS: usize = 10;
 /// The ranks of true values among posterior draws.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ranks {
-    /// The parameters' names.
+    /// The parameters' names, then "log likelihood".
     pub names: Vec<String>,
     /// Of each parameter the ranks, 0 to 99, one for each replication.
     pub ranks: Vec<Vec<usize>>,
@@ -54,16 +54,23 @@ impl Ranks {
     }
 }
 
+/// Makes a model of a recording.
+pub type Making<'a> = &'a (dyn Fn(&[Series]) -> Result<Box<dyn Model>> + Sync);
+
 /// Ranks true values over a number of replications: `model` says where
-/// parameters and recordings come from, `fitted` makes the model of a
-/// simulated recording. Both are the same model unless a wrong one is to be
-/// caught.
+/// parameters and recordings come from, `remade` is the same model of a
+/// simulated recording and `fitted` the one that is calibrated: the same,
+/// unless a wrong one is to be caught.
+///
+/// Beside the parameters the log likelihood is ranked: parameters alone
+/// cannot tell a posterior that passes over a part of the recording
+/// (Modrak et al. 2023).
 ///
 /// # Errors
 /// An improper prior, a backend without draws, or a model that fails.
 pub fn ranks(
     model: &dyn Model,
-    fitted: &(dyn Fn(Vec<Series>) -> Result<Box<dyn Model>> + Sync),
+    [remade, fitted]: [Making<'_>; 2],
     backend: &dyn Backend,
     replications: usize,
     seed: Seed,
@@ -71,16 +78,19 @@ pub fn ranks(
 ) -> Result<Ranks> {
     let prior = Posterior::new(model)?;
     prior.require_proper("simulation-based calibration")?;
-    let names = prior.parameters().iter().map(|p| p.name.clone()).collect();
+    let mut names: Vec<String> =
+        prior.parameters().iter().map(|p| p.name.clone()).collect();
+    names.push("log likelihood".to_owned());
     let rows = (0..replications as u64)
         .into_par_iter()
         .map(|i| {
-            let row = replication(&prior, fitted, backend, seed.child(i));
+            let row =
+                replication(&prior, [remade, fitted], backend, seed.child(i));
             progress.advance(1);
             row
         })
         .collect::<Result<Vec<_>>>()?;
-    let ranks = (0..prior.dimension())
+    let ranks = (0..names.len())
         .map(|i| rows.iter().map(|row| row[i]).collect())
         .collect();
     Ok(Ranks { names, ranks })
@@ -89,13 +99,13 @@ pub fn ranks(
 /// The rank of each parameter's true value in one replication.
 fn replication(
     prior: &Posterior<'_>,
-    fitted: &dyn Fn(Vec<Series>) -> Result<Box<dyn Model>>,
+    [remade, fitted]: [Making<'_>; 2],
     backend: &dyn Backend,
     seed: Seed,
 ) -> Result<Vec<usize>> {
     let truth = drawn(prior, seed.child(0))?;
     let seen = simulate(prior.model(), &truth, seed.child(1))?;
-    let model = fitted(seen)?;
+    let model = fitted(&seen)?;
     let posterior = Posterior::new(model.as_ref())?;
     let found = infer(backend, &posterior, seed.child(2), &Quiet)?;
     let draws = found.draws.ok_or_else(|| {
@@ -103,7 +113,19 @@ fn replication(
     })?;
     let rows = draws.thinned(AMONG);
     let below = |i: usize| rows.iter().filter(|row| row[i] < truth[i]).count();
-    Ok((0..truth.len()).map(below).collect())
+    let mut ranks: Vec<usize> = (0..truth.len()).map(below).collect();
+    let right = remade(&seen)?;
+    let likelihood = |row: &[f64]| -> Result<f64> {
+        let density = right.evaluate(Point::Natural(row), None)?;
+        Ok(density.log_likelihood)
+    };
+    let of_truth = likelihood(&truth)?;
+    let mut lower = 0;
+    for row in &rows {
+        lower += usize::from(likelihood(row)? < of_truth);
+    }
+    ranks.push(lower);
+    Ok(ranks)
 }
 
 /// How many draws from the prior may have no flow before it is given up.

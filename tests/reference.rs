@@ -8,8 +8,8 @@ use std::path::Path;
 
 use couloir::draws::{Draws, mcse_quantile, quantile};
 use couloir::infer::{
-    BACKENDS, Backend, Effort, ImportanceSampling, Inference, LEVELS, Map,
-    MetropolisHastings, Quadrature, Quiet, Smc, infer,
+    BACKENDS, Backend, Bridge, Effort, ImportanceSampling, Inference, LEVELS,
+    Map, MetropolisHastings, Quadrature, Quiet, Smc, infer,
 };
 use couloir::io::load;
 use couloir::model::{Assembled, Posterior};
@@ -196,6 +196,16 @@ fn the_evidence_by_importance_sampling() {
     }
 }
 
+#[test]
+fn the_evidence_by_bridge_sampling() {
+    let on_chains = Bridge::default();
+    let on_particles = Bridge { sampler: Smc::default(), draws: 20_000 };
+    for seed in 1..=2 {
+        assert_evidence(&on_chains, seed);
+        assert_evidence(&on_particles, seed);
+    }
+}
+
 /// Every backend that the command can name, a new one unasked: draws by
 /// their quantiles, an evidence by its own error unless the backend warns of
 /// it, a mode by its height.
@@ -233,8 +243,8 @@ fn every_listed_backend_agrees_with_the_quadrature() {
 fn the_errors_of_the_evidence_are_right() {
     let expected =
         reference()["piecewise_linear_track"]["lnZ1"].as_f64().unwrap();
-    let backends: [&dyn Backend; 2] =
-        [&Smc::default(), &ImportanceSampling::default()];
+    let backends: [&dyn Backend; 3] =
+        [&Smc::default(), &ImportanceSampling::default(), &Bridge::default()];
     for backend in backends {
         let squares: f64 = (0..40)
             .map(|seed| {
@@ -255,8 +265,9 @@ fn a_seed_gives_the_same_bits_on_any_number_of_threads() {
     let importance = ImportanceSampling { draws: 1000, pilot: smc.clone() };
     let walk = MetropolisHastings::random_walk(&effort);
     let adaptive = MetropolisHastings::adaptive(&effort);
+    let bridge = Bridge { sampler: smc.clone(), draws: 1000 };
     let mut backends: Vec<&dyn Backend> =
-        vec![&adaptive, &walk, &smc, &importance];
+        vec![&adaptive, &walk, &smc, &importance, &bridge];
     #[cfg(feature = "nuts")]
     let nuts = couloir::infer::Nuts::of_effort(&effort);
     #[cfg(feature = "nuts")]

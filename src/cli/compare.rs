@@ -28,7 +28,7 @@ pub(super) struct Arguments {
     models: Vec<String>,
     #[command(flatten)]
     work: Work,
-    /// Backend with an evidence: smc, importance or reciprocal
+    /// Backend with an evidence: smc, importance, bridge or reciprocal
     #[arg(long, default_value = "smc", value_parser = backend_name)]
     backend: String,
     /// Predict each value from those before it as well (leave-future-out),
@@ -164,8 +164,8 @@ impl Arguments {
         let both = found.evidence.clone().zip(found.draws.as_ref());
         let (evidence, draws) = both.ok_or_else(|| {
             Error::input(format!(
-                "backend {} gives no evidence; use smc, importance or \
-                 reciprocal",
+                "backend {} gives no evidence; use smc, importance, bridge \
+                 or reciprocal",
                 self.backend
             ))
         })?;

@@ -29,7 +29,7 @@ impl Default for ImportanceSampling {
     fn default() -> Self {
         Self {
             draws: 20_000,
-            pilot: Smc { particles: 500, refine: false, ..Smc::default() },
+            pilot: Smc { particles: 1000, refine: false, ..Smc::default() },
         }
     }
 }
@@ -94,8 +94,7 @@ impl ImportanceSampling {
             let count = (self.draws / 4).clamp(500, FITTED);
             let found =
                 population(posterior, &base, count, seed.child(2 + round))?;
-            let weights = normalised(&found);
-            let rows: Vec<_> = found.into_iter().map(|p| p.z).collect();
+            let (rows, weights) = joined(&rows, found);
             base = fit(&rows, &weights, seed.child(10 + round));
             progress.advance(count as u64);
         }
@@ -109,6 +108,25 @@ fn fit(rows: &[Vec<f64>], weights: &[f64], seed: Seed) -> Base {
         Some(mixture) => Base::Mixture(mixture),
         None => Base::Prior,
     }
+}
+
+/// What a mixture is refitted to: the given draws and the proposal's own, with
+/// half of the weight each. The given draws keep every mode in, and the
+/// proposal's weights are cut at the square root of their number times the
+/// mean (Ionides 2008), so that no single draw makes a component.
+fn joined(
+    given: &[Vec<f64>],
+    found: Vec<Particle>,
+) -> (Vec<Vec<f64>>, Vec<f64>) {
+    let most = 1.0 / (found.len() as f64).sqrt();
+    let cut: Vec<f64> =
+        normalised(&found).iter().map(|w| w.min(most)).collect();
+    let total: f64 = cut.iter().sum();
+    let mut weights = vec![0.5 / given.len() as f64; given.len()];
+    weights.extend(cut.iter().map(|w| 0.5 * w / total));
+    let mut rows = given.to_vec();
+    rows.extend(found.into_iter().map(|p| p.z));
+    (rows, weights)
 }
 
 fn normalised(particles: &[Particle]) -> Vec<f64> {

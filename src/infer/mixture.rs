@@ -57,9 +57,14 @@ impl Component {
     }
 
     fn log_density(&self, z: &DVector<f64>) -> f64 {
+        self.log_density_at(self.distance(z))
+    }
+
+    /// The log density at such a squared distance.
+    fn log_density_at(&self, distance: f64) -> f64 {
         let n = self.mean.len() as f64;
         self.log_weight + self.log_constant
-            - 0.5 * (FREEDOM + n) * (self.distance(z) / FREEDOM).ln_1p()
+            - 0.5 * (FREEDOM + n) * (distance / FREEDOM).ln_1p()
     }
 }
 
@@ -96,9 +101,16 @@ impl Mixture {
             let score = fitted.criterion(&points, weights, effective);
             if best.as_ref().is_none_or(|(lowest, _)| score < *lowest) {
                 best = Some((score, fitted));
+            } else if best.as_ref().is_some_and(|(_, b)| b.few(count)) {
+                break;
             }
         }
         best.and_then(|(_, fitted)| fitted.inflated())
+    }
+
+    /// Whether two more components than it has, up to `count`, did not help.
+    fn few(&self, count: usize) -> bool {
+        count >= self.components.len() + 2
     }
 
     fn criterion(
@@ -164,6 +176,13 @@ impl Mixture {
     }
 }
 
+/// The most rounds of a fit.
+const ROUNDS: usize = 60;
+
+/// A gain of the mean log density, by a round, below which a fit ends: a
+/// proposal is none the worse for what is left.
+const ENOUGH: f64 = 1e-4;
+
 /// Fits a mixture by expectation-maximisation for t components (Peel,
 /// McLachlan 2000), from centres drawn far apart.
 fn expectation_maximisation(
@@ -180,40 +199,49 @@ fn expectation_maximisation(
         .into_iter()
         .map(|m| Component::new(1.0 / count as f64, m, &narrow))
         .collect::<Option<_>>()?;
-    let rounds = if count == 1 { 10 } else { 60 };
-    for _ in 0..rounds {
-        components = maximise(points, weights, &components)?;
+    let mut fit = f64::NEG_INFINITY;
+    for _ in 0..ROUNDS {
+        let (next, before) = maximise(points, weights, &components)?;
+        components = next;
+        if before - fit < ENOUGH {
+            break;
+        }
+        fit = before;
     }
     Some(Mixture { components })
 }
 
-/// One round: responsibilities, then weighted moments of each component.
+/// One round: responsibilities, then weighted moments of each component. The
+/// mean log density before it comes with the new components.
 fn maximise(
     points: &[DVector<f64>],
     weights: &[f64],
     components: &[Component],
-) -> Option<Vec<Component>> {
+) -> Option<(Vec<Component>, f64)> {
     let n = points.first()?.len();
     let mut totals = vec![0.0; components.len()];
     let mut masses = totals.clone();
     let mut means = vec![DVector::zeros(n); components.len()];
     let mut squares = vec![DMatrix::zeros(n, n); components.len()];
+    let mut fit = 0.0;
     for (z, w) in points.iter().zip(weights).filter(|(_, w)| **w > 0.0) {
-        let logs: Vec<f64> =
-            components.iter().map(|c| c.log_density(z)).collect();
+        let distances: Vec<f64> =
+            components.iter().map(|c| c.distance(z)).collect();
+        let at = components.iter().zip(&distances);
+        let logs: Vec<f64> = at.map(|(c, d)| c.log_density_at(*d)).collect();
         let total = log_sum_exp(logs.iter().copied());
-        for (k, component) in components.iter().enumerate() {
+        fit += w * total;
+        for k in 0..components.len() {
             let share = w * (logs[k] - total).exp();
             // The t's latent precision, given the point.
-            let precision =
-                (FREEDOM + n as f64) / (FREEDOM + component.distance(z));
+            let precision = (FREEDOM + n as f64) / (FREEDOM + distances[k]);
             totals[k] += share;
             masses[k] += share * precision;
             means[k].axpy(share * precision, z, 1.0);
             squares[k].ger(share * precision, z, z, 1.0);
         }
     }
-    (0..components.len())
+    let maximised = (0..components.len())
         .map(|k| {
             if totals[k] < 1e-3 {
                 return None;
@@ -223,7 +251,8 @@ fn maximise(
             let outer = &mean * mean.transpose() * (masses[k] / totals[k]);
             Component::new(totals[k], mean, &(second - outer))
         })
-        .collect()
+        .collect::<Option<_>>()?;
+    Some((maximised, fit))
 }
 
 fn moments(

@@ -5,24 +5,26 @@
 //! what it cost. Every random number comes from the seed by a fixed path, so
 //! a run is the same to the last bit on any number of threads.
 
+mod bridge;
 mod importance;
 mod map;
 mod mh;
 mod mixture;
-mod quadrature;
 #[cfg(feature = "nuts")]
 mod nuts;
+mod quadrature;
 mod reciprocal;
 mod smc;
 mod told;
 
+pub use bridge::Bridge;
 pub use importance::ImportanceSampling;
 pub use map::{Map, Mode};
 pub use mh::{MetropolisHastings, Proposal};
 pub use mixture::Mixture;
-pub use quadrature::{LEVELS, Marginal, Quadrature};
 #[cfg(feature = "nuts")]
 pub use nuts::Nuts;
+pub use quadrature::{LEVELS, Marginal, Quadrature};
 pub use reciprocal::ReciprocalImportance;
 pub use smc::Smc;
 
@@ -180,6 +182,11 @@ pub const BACKENDS: &[Entry] = &[
         name: "importance",
         about: "importance sampling by a Student-t mixture, with evidence",
         make: |effort| Box::new(ImportanceSampling::of_effort(effort)),
+    },
+    Entry {
+        name: "bridge",
+        about: "bridge sampling on particles, with evidence",
+        make: |effort| Box::new(Bridge::on_particles(effort)),
     },
     Entry {
         name: "reciprocal",
