@@ -7,6 +7,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rand::RngExt;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
+use smallvec::SmallVec;
 use statrs::function::gamma::ln_gamma;
 
 use super::log_sum_exp;
@@ -51,9 +52,14 @@ impl Component {
 
     /// The squared distance from the mean, in units of the shape.
     fn distance(&self, z: &DVector<f64>) -> f64 {
-        let mut d = z - &self.mean;
-        self.shape.l_dirty().solve_lower_triangular_mut(&mut d);
-        d.norm_squared()
+        let factor = self.shape.l_dirty();
+        let mut solved = SmallVec::<[f64; 16]>::new();
+        for i in 0..self.mean.len() {
+            let before = solved.iter().enumerate();
+            let known: f64 = before.map(|(j, x)| factor[(i, j)] * x).sum();
+            solved.push((z[i] - self.mean[i] - known) / factor[(i, i)]);
+        }
+        solved.iter().map(|x| x * x).sum()
     }
 
     fn log_density(&self, z: &DVector<f64>) -> f64 {

@@ -309,7 +309,7 @@ impl<'p, 'm> Grid<'p, 'm> {
         let at_b = height(self.posterior, z)?;
         let spread = (-a).exp() - (-b).exp();
         let rate = (at_b - at_a + c.alpha * (b - a)) / spread;
-        if !(rate > 0.0) {
+        if rate <= 0.0 || rate.is_nan() {
             return Ok((f64::NEG_INFINITY, 0.0));
         }
         let constant = at_a + c.alpha * a + rate * (-a).exp();
@@ -385,7 +385,7 @@ impl Integrated {
             .iter()
             .zip(&self.rates)
             .map(|(log, rate)| ((log - self.log).exp(), *rate))
-            .filter(|(share, _)| *share > 1e-10)
+            .filter(|(share, _)| *share > 1e-8)
             .collect();
         let sum = |f: &dyn Fn(f64) -> f64| -> f64 {
             parts.iter().map(|(share, rate)| share * f(*rate)).sum()

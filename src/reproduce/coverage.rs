@@ -6,8 +6,8 @@ use super::experiment::{Priors, TRUTH, Which, model, plan, series};
 use crate::draws::{Draws, summarise};
 use crate::error::{Error, Result};
 use crate::infer::{
-    Effort, ImportanceSampling, Inference, Map, Marginal, MetropolisHastings,
-    Progress, Quadrature, Quiet, infer,
+    Bridge, Effort, Inference, Map, Marginal, MetropolisHastings, Progress,
+    Quadrature, Quiet, infer,
 };
 use crate::model::Posterior;
 use crate::observe::{Event, Series};
@@ -28,7 +28,7 @@ pub struct ModelStudy {
     pub modes: Vec<Vec<f64>>,
     /// The lowest and the highest acceptance rate of any series' chain.
     pub acceptance: (f64, f64),
-    /// ln evidence of each series by importance sampling.
+    /// ln evidence of each series by bridge sampling.
     pub log_evidence: Vec<f64>,
     /// The same by quadrature.
     pub log_evidence_exact: Vec<f64>,
@@ -91,6 +91,11 @@ fn walk(
     found.draws.ok_or_else(|| Error::inference("the walk left no draws"))
 }
 
+/// As many nodes as leave the evidence of these models right to 0.02.
+fn quadrature() -> Quadrature {
+    Quadrature { nodes: Some(20), ..Quadrature::default() }
+}
+
 fn evidence(found: &Inference) -> f64 {
     found.evidence.as_ref().map_or(f64::NAN, |e| e.log)
 }
@@ -108,18 +113,15 @@ fn fit(
     let median = summaries.iter().map(|s| s.q50).collect();
     let search = Map { starts: 1, from: vec![median] };
     let mode = infer(&search, &posterior, seed.child(1), &Quiet)?.mode;
-    let sampler =
-        ImportanceSampling { draws: 4000, ..ImportanceSampling::default() };
-    let sampled =
-        sampler.from_draws(&posterior, &draws, seed.child(2), &Quiet)?;
-    let exact =
-        Quadrature::default().from_draws(&posterior, &draws, &Quiet)?;
+    let bridge = Bridge { draws: 4000, ..Bridge::default() };
+    let (sampled, _) = bridge.from_draws(&posterior, &draws, seed.child(2))?;
+    let exact = quadrature().from_draws(&posterior, &draws, &Quiet)?;
     Ok(Fit {
         names: draws.names().to_vec(),
         intervals: summaries.iter().map(|s| (s.q05, s.q95)).collect(),
         mode: mode.map_or_else(Vec::new, |m| m.natural),
         acceptance: draws.acceptance().first().copied().unwrap_or(f64::NAN),
-        log_evidence: evidence(&sampled),
+        log_evidence: sampled.log,
         log_evidence_exact: evidence(&exact),
         exact: exact.marginals,
     })
@@ -266,5 +268,5 @@ fn exactly(
     let model = model(event, which, priors)?;
     let posterior = Posterior::new(&model)?;
     let draws = walk(&posterior, &SCOUTING, seed)?;
-    Quadrature::default().from_draws(&posterior, &draws, &Quiet)
+    quadrature().from_draws(&posterior, &draws, &Quiet)
 }

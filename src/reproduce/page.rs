@@ -287,7 +287,7 @@ fn bayes_factors(found: &Reproduction) -> Picture {
     box_plots(
         "bayes-factors",
         "Bayes factor of M1 against M0 (Figure 8 e)",
-        "Of every series, by importance sampling and by quadrature; dashed: \
+        "Of every series, by bridge sampling and by quadrature; dashed: \
          2, from where evidence is called decisive (Kass and Raftery 1995).",
         &[panel],
     )
