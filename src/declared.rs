@@ -6,6 +6,7 @@
 
 use std::ops::Deref;
 
+use crate::change::Change;
 use crate::context::Context;
 use crate::error::Stop;
 use crate::noise::{Conditional, Grid, Noise};
@@ -16,6 +17,7 @@ use crate::seed::Rng;
 #[derive(Debug)]
 pub struct Declared<'r, K: Kind, B: ?Sized> {
     context: &'r Context<K>,
+    change: Option<&'r Change<K>>,
     block: B,
 }
 
@@ -24,7 +26,18 @@ impl<'r, K: Kind, B> Declared<'r, K, B> {
     ///
     /// [`Run::declare`]: crate::Run::declare
     pub fn new(block: B, context: &'r Context<K>) -> Self {
-        Self { block, context }
+        Self { block, context, change: None }
+    }
+
+    /// The same block under a change to its model.
+    #[must_use]
+    pub fn under(self, change: Option<&'r Change<K>>) -> Self {
+        Self { change, ..self }
+    }
+
+    /// The change to the model that it is a block of.
+    pub fn change(&self) -> Option<&'r Change<K>> {
+        self.change
     }
 
     /// The context of the evaluation.

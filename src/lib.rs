@@ -82,9 +82,11 @@
 
 pub mod block;
 pub mod calibrate;
+pub mod change;
 pub mod cli;
 pub mod context;
 pub mod declared;
+pub mod discrepancy;
 pub mod draws;
 pub mod elpd;
 pub mod error;

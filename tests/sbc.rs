@@ -77,7 +77,7 @@ impl<K: Kind> couloir::noise::Noise<K> for Firstless<Real<K>> {
                     -0.5 * (self.sigma2.ln() + eta * eta / self.sigma2)
                 }
             };
-            visit(Conditional { log_density, deviate: 0.0 });
+            visit(Conditional { log_density, deviate: Real::new(0.0) });
         }
         Ok(())
     }

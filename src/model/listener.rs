@@ -118,7 +118,7 @@ impl Listener<Plain> for Collector {
         let mut innovations = Vec::with_capacity(residuals.len());
         noise.walk(series.grid(), residuals, &mut |value| {
             c.pointwise.push(value.log_density.value());
-            innovations.push(noise.standardise(value.deviate));
+            innovations.push(noise.standardise(value.deviate.value()));
         })?;
         c.innovations.push(innovations);
         Ok(())

@@ -7,15 +7,19 @@
 //! program; every program has it.
 
 mod assembled;
+mod information;
 mod listener;
 mod number;
 mod posterior;
 mod program;
 mod run;
+mod with;
 
 pub use assembled::Assembled;
+pub use information::Information;
 pub use listener::{Collected, Collector, Declaration, Listener, Replicates};
 pub use number::Number;
 pub use posterior::{Cost, Parameter, Posterior};
 pub use program::{Density, Model, Point, Program, Weights};
 pub use run::{Label, Run};
+pub use with::With;

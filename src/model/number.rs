@@ -3,13 +3,14 @@
 //! A model's body is generic; it is compiled for plain numbers and for three
 //! widths of gradient. More parameters than the widest take several passes.
 
+use crate::change::ChangeKind;
 use crate::context::Context;
 use crate::noise::NoiseKind;
 use crate::physics::friction::LawKind;
 use crate::scalar::{Grad, Kind, Plain};
 
 /// A kind of number with a home for its buffers on every thread.
-pub trait Number: Kind + LawKind + NoiseKind {
+pub trait Number: Kind + LawKind + NoiseKind + ChangeKind {
     /// Runs `work` with this thread's context for this kind.
     fn with_context<R>(work: impl FnOnce(&Context<Self>) -> R) -> R;
 }

@@ -6,6 +6,7 @@
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
+use super::information::Information;
 use super::listener::{Collected, Collector};
 use super::program::{Density, Model, Point, Weights};
 use crate::error::{Error, Result};
@@ -140,6 +141,16 @@ impl<'m> Posterior<'m> {
         let density = self.model.gradient(z, weights, gradient)?;
         self.tally.count(GRADIENTS, &density);
         Ok(density)
+    }
+
+    /// The density at a place on the real line to second order.
+    ///
+    /// # Errors
+    /// As [`Posterior::density`].
+    pub fn information(&self, z: &[f64]) -> Result<Information> {
+        let information = self.model.information(z)?;
+        self.tally.count(GRADIENTS, &information.density);
+        Ok(information)
     }
 
     /// Everything that the model says at a point.

@@ -1,5 +1,6 @@
 //! From a program to a model: the one run, asked in different ways.
 
+use super::information::{Information, information};
 use super::listener::Listener;
 use super::number::Number;
 use super::run::{Run, Source};
@@ -119,6 +120,13 @@ pub trait Model: Sync {
         weights: Weights,
         gradient: &mut [f64],
     ) -> Result<Density>;
+
+    /// The density at a place on the real line to second order, from first
+    /// derivatives.
+    ///
+    /// # Errors
+    /// As [`Model::evaluate`].
+    fn information(&self, z: &[f64]) -> Result<Information>;
 }
 
 impl<P: Program> Model for P {
@@ -148,6 +156,10 @@ impl<P: Program> Model for P {
             3..=4 => pass::<Grad<4>, P>(self, z, weights, gradient),
             _ => pass::<Grad<8>, P>(self, z, weights, gradient),
         }
+    }
+
+    fn information(&self, z: &[f64]) -> Result<Information> {
+        information(self, z)
     }
 }
 
@@ -186,7 +198,7 @@ fn pass<K: Number, P: Program>(
 type Parts<K> = (Density, Real<K>, Real<K>, Real<K>);
 
 /// One run of the body, its failures sorted into density zero and the rest.
-fn run<K: Number, P: Program>(
+pub(super) fn run<K: Number, P: Program>(
     program: &P,
     source: Source<'_>,
     expected: Option<usize>,

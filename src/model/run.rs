@@ -6,10 +6,11 @@
 
 use super::listener::{Declaration, Listener};
 use crate::block::List;
+use crate::change::Change;
 use crate::context::Context;
 use crate::declared::Declared;
 use crate::error::{Error, Outcome, Stop};
-use crate::noise::Noise;
+use crate::noise::{Altered, Noise};
 use crate::observe::{Prediction, Series};
 use crate::prior::{Prior, Support};
 use crate::scalar::{Kind, Real};
@@ -78,6 +79,17 @@ pub(super) enum Source<'r> {
     Middle,
 }
 
+impl Source<'_> {
+    fn reborrow(&mut self) -> Source<'_> {
+        match self {
+            Self::Line { z, first } => Source::Line { z, first: *first },
+            Self::Natural { x } => Source::Natural { x },
+            Self::Prior { rng } => Source::Prior { rng },
+            Self::Middle => Source::Middle,
+        }
+    }
+}
+
 /// One run of a model's body over numbers of kind `K`.
 #[derive(Debug)]
 pub struct Run<'r, K: Kind> {
@@ -88,6 +100,7 @@ pub struct Run<'r, K: Kind> {
     pub(super) log_jacobian: Real<K>,
     pub(super) log_likelihood: Real<K>,
     listener: Option<&'r mut dyn Listener<K>>,
+    change: Option<&'r Change<K>>,
 }
 
 impl<'r, K: Kind> Run<'r, K> {
@@ -105,7 +118,36 @@ impl<'r, K: Kind> Run<'r, K> {
             log_jacobian: zero,
             log_likelihood: zero,
             listener,
+            change: None,
         }
+    }
+
+    /// Runs a body under a change; within a change, under both.
+    ///
+    /// # Errors
+    /// Those of the body.
+    pub fn under(
+        &mut self,
+        change: &Change<K>,
+        body: impl FnOnce(&mut Run<'_, K>) -> Outcome,
+    ) -> Outcome {
+        let both = self.change.map(|outer| outer.and(change));
+        let mut inner = Run {
+            context: self.context,
+            source: self.source.reborrow(),
+            position: self.position,
+            log_prior: self.log_prior,
+            log_jacobian: self.log_jacobian,
+            log_likelihood: self.log_likelihood,
+            listener: self.listener.as_mut().map(|l| &mut **l as _),
+            change: Some(both.as_ref().unwrap_or(change)),
+        };
+        let outcome = body(&mut inner);
+        self.position = inner.position;
+        self.log_prior = inner.log_prior;
+        self.log_jacobian = inner.log_jacobian;
+        self.log_likelihood = inner.log_likelihood;
+        outcome
     }
 
     /// How many parameters were asked for so far.
@@ -180,7 +222,7 @@ impl<'r, K: Kind> Run<'r, K> {
     /// Declares a block.
     #[inline]
     pub fn declare<B>(&mut self, block: B) -> Declared<'r, K, B> {
-        Declared::new(block, self.context)
+        Declared::new(block, self.context).under(self.change)
     }
 
     /// Scores a series against what the model predicts, with a noise.
@@ -203,16 +245,46 @@ impl<'r, K: Kind> Run<'r, K> {
         }
         noise.check(series.grid())?;
         let mut residuals = self.context.buffer();
-        let mut values = series.values().iter();
+        let Some(change) = self.change else {
+            let mut values = series.values().iter();
+            prediction.predict(series, |predicted| {
+                let value = values.next().copied().unwrap_or(f64::NAN);
+                residuals.push(value - predicted);
+            })?;
+            return self.score(series, &residuals, noise);
+        };
+        let mut covariate = self.context.buffer();
+        let mut recorded = series.times().iter().zip(series.values());
         prediction.predict(series, |predicted| {
-            let value = values.next().copied().unwrap_or(f64::NAN);
-            residuals.push(value - predicted);
+            let (&time, &value) = recorded.next().unwrap_or((&0.0, &f64::NAN));
+            let shown = change.read(time, predicted);
+            residuals.push(value - shown);
+            covariate.push(change.spread_along.of(time, shown));
         })?;
+        if change.noise.is_none() {
+            return self.score(series, &residuals, noise);
+        }
+        let altered = Altered {
+            base: noise,
+            change: change.noise,
+            covariate: &covariate,
+        };
+        self.score(series, &residuals, &altered)
+    }
+
+    /// Scores residuals and lets the listener hear them.
+    #[inline]
+    fn score<N: Noise<K>>(
+        &mut self,
+        series: &Series,
+        residuals: &[Real<K>],
+        noise: &N,
+    ) -> Outcome {
         if let Some(listener) = &mut self.listener {
-            listener.series(series, &residuals, noise)?;
+            listener.series(series, residuals, noise)?;
         }
         self.log_likelihood +=
-            noise.log_likelihood(series.grid(), &residuals)?;
+            noise.log_likelihood(series.grid(), residuals)?;
         Ok(())
     }
 

@@ -10,25 +10,25 @@ use crate::scalar::{Kind, Real};
 pub(crate) struct Gaussian<K: Kind> {
     constant: Real<K>,
     half_precision: Real<K>,
-    inverse_sd: f64,
+    inverse_sd: Real<K>,
 }
 
 impl<K: Kind> Gaussian<K> {
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new(variance: Real<K>) -> Self {
         Self {
             constant: -0.5 * variance.ln() - LN_SQRT_2PI,
             half_precision: 0.5 / variance,
-            inverse_sd: 1.0 / variance.value().sqrt(),
+            inverse_sd: 1.0 / variance.sqrt(),
         }
     }
 
     /// One value.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn at(&self, r: Real<K>) -> Conditional<K> {
         Conditional {
             log_density: self.constant - r * r * self.half_precision,
-            deviate: r.value() * self.inverse_sd,
+            deviate: r * self.inverse_sd,
         }
     }
 

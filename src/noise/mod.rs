@@ -5,6 +5,7 @@
 //! it; likelihood, pointwise likelihood and standardised innovations are
 //! three listeners to that walk.
 
+mod altered;
 mod ar;
 mod catalogue;
 mod gaussian;
@@ -14,6 +15,7 @@ mod student;
 #[cfg(test)]
 mod tests;
 
+pub use altered::{Alteration, Altered};
 pub use ar::Ar;
 pub use catalogue::{NoiseEntry, NoiseFor, NoiseKind, names, parse};
 pub use grid::{Grid, Spacing};
@@ -31,7 +33,7 @@ pub struct Conditional<K: Kind> {
     pub log_density: Real<K>,
     /// The innovation over its scale, as the noise's own law sees it;
     /// [`Noise::standardise`] makes it a standard normal deviate.
-    pub deviate: f64,
+    pub deviate: Real<K>,
 }
 
 /// A distribution of residuals.
@@ -84,7 +86,9 @@ pub trait Noise<K: Kind> {
         residuals: &[Real<K>],
     ) -> Result<Vec<f64>, Stop> {
         let mut deviates = Vec::with_capacity(residuals.len());
-        self.walk(at, residuals, &mut |value| deviates.push(value.deviate))?;
+        self.walk(at, residuals, &mut |value| {
+            deviates.push(value.deviate.value());
+        })?;
         Ok(deviates.into_iter().map(|d| self.standardise(d)).collect())
     }
 }

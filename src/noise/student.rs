@@ -95,7 +95,7 @@ impl<K: Kind> Noise<K> for Student<Real<K>> {
         visit: &mut dyn FnMut(Conditional<K>),
     ) -> Result<(), Stop> {
         self.each(at, residuals, |law, r| {
-            let deviate = r.value() * law.inverse_width;
+            let deviate = r * law.inverse_width;
             visit(Conditional { log_density: law.log_density(r), deviate });
         })
     }
@@ -125,21 +125,25 @@ impl<K: Kind> Noise<K> for Student<Real<K>> {
     }
 
     fn standardise(&self, deviate: f64) -> f64 {
-        let dof = self.dof.value();
-        if dof > 1e6 {
-            // Abramowitz and Stegun 1972, equation 26.7.8; the distribution
-            // function is lost to round-off here.
-            let shrunk = deviate * (1.0 - 0.25 / dof);
-            return shrunk / (1.0 + 0.5 * deviate * deviate / dof).sqrt();
-        }
-        let Ok(law) = StudentsT::new(0.0, 1.0, dof) else {
-            return f64::NAN;
-        };
-        // In the lower tail, where a small probability is exact.
-        let tail = law.cdf(-deviate.abs()).max(f64::MIN_POSITIVE);
-        let z = Normal::standard().inverse_cdf(tail.min(0.5));
-        z.abs().copysign(deviate)
+        normal_score(deviate, self.dof.value())
     }
+}
+
+/// The standard normal deviate as far out as a Student one.
+pub(super) fn normal_score(deviate: f64, dof: f64) -> f64 {
+    if dof > 1e6 {
+        // Abramowitz and Stegun 1972, equation 26.7.8; the distribution
+        // function is lost to round-off here.
+        let shrunk = deviate * (1.0 - 0.25 / dof);
+        return shrunk / (1.0 + 0.5 * deviate * deviate / dof).sqrt();
+    }
+    let Ok(law) = StudentsT::new(0.0, 1.0, dof) else {
+        return f64::NAN;
+    };
+    // In the lower tail, where a small probability is exact.
+    let tail = law.cdf(-deviate.abs()).max(f64::MIN_POSITIVE);
+    let z = Normal::standard().inverse_cdf(tail.min(0.5));
+    z.abs().copysign(deviate)
 }
 
 /// A Student density of mean 0 with its constants worked out once.
@@ -149,7 +153,7 @@ struct Law<K: Kind> {
     power: Real<K>,
     /// 1 / (dof w^2).
     precision: Real<K>,
-    inverse_width: f64,
+    inverse_width: Real<K>,
 }
 
 impl<K: Kind> Law<K> {
@@ -159,7 +163,7 @@ impl<K: Kind> Law<K> {
             constant: log_peak - 0.5 * square.ln(),
             power: 0.5 * (dof + 1.0),
             precision: 1.0 / (dof * square),
-            inverse_width: 1.0 / square.value().sqrt(),
+            inverse_width: 1.0 / square.sqrt(),
         }
     }
 
@@ -171,7 +175,7 @@ impl<K: Kind> Law<K> {
 
 /// ln G((dof + 1)/2) - ln G(dof/2) - ln(pi dof)/2, the log density of the
 /// standard law at 0.
-fn log_peak<K: Kind>(dof: Real<K>) -> Real<K> {
+pub(super) fn log_peak<K: Kind>(dof: Real<K>) -> Real<K> {
     let a = 0.5 * dof;
     if a > 100.0 {
         // Difference of two large numbers; by Stirling's series, error

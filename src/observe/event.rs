@@ -1,11 +1,19 @@
 //! An event: the ground, how the mass starts, and what was recorded.
 
+use super::extent::path_length;
 use super::flow::Flow;
 use super::series::{Quantity, Series};
+use crate::change::Change;
 use crate::declared::Declared;
 use crate::error::{Error, Result, Stop};
-use crate::physics::{Friction, Path, Release, Rest, Track, rest, sample};
-use crate::scalar::{Kind, Real};
+use crate::physics::{
+    Friction, Path, Release, Rest, State, Track, rest, rest_changed, sample,
+    sample_changed,
+};
+use crate::scalar::Kind;
+
+/// A window \[s\] so short that a mean over it is the value itself.
+const NO_WINDOW: f64 = 1e-6;
 
 /// One avalanche, or another mass that slid, with its recording.
 ///
@@ -201,6 +209,13 @@ impl Event {
         let context = friction.context();
         context.count_slide();
         let mut flow = Flow::new(self, friction);
+        if let Some(change) = friction.change()
+            && change.moves()
+        {
+            let law = friction.block();
+            self.slide_changed(law, change, |state| flow.push(state, false))?;
+            return Ok(flow);
+        }
         let speed_only = self.velocity.window() == 0.0
             && self.position.is_empty()
             && self.acceleration.is_empty();
@@ -215,13 +230,71 @@ impl Event {
         Ok(flow)
     }
 
-    /// Where and when the mass comes to rest under a friction law; `None` if
-    /// it never does.
+    /// The motion under a change, as the recording's clock shows it.
+    fn slide_changed<K: Kind, L: Friction<K>>(
+        &self,
+        law: &L,
+        change: &Change<K>,
+        mut visit: impl FnMut(State<K>),
+    ) -> Result<(), Stop> {
+        let release = self.release_changed(change);
+        let path = self.path();
+        let moments = || self.samples.iter().map(|&t| t - change.clock);
+        let forces = &change.forces;
+        if change.window <= NO_WINDOW {
+            return sample_changed(
+                &path,
+                law,
+                forces,
+                release,
+                moments(),
+                visit,
+            );
+        }
+        let since = moments().map(|t| (t - change.window).max(0.0));
+        let mut begins = Vec::with_capacity(self.samples.len());
+        sample_changed(&path, law, forces, release, since, |state| {
+            begins.push(state.distance);
+        })?;
+        let mut windows = moments().zip(begins);
+        sample_changed(&path, law, forces, release, moments(), |state| {
+            let Some((time, begin)) = windows.next() else { return };
+            let lasts =
+                if time < change.window { time } else { change.window };
+            let speed = if lasts > NO_WINDOW {
+                (state.distance - begin) / lasts
+            } else {
+                state.speed
+            };
+            visit(State { speed, ..state });
+        })
+    }
+
+    /// The release under a change.
+    fn release_changed<K: Kind>(&self, change: &Change<K>) -> Release<K> {
+        let Release { distance, speed } = self.release::<K>();
+        Release {
+            distance: distance + change.start_place,
+            speed: speed + change.start_speed,
+        }
+    }
+
+    /// Where and when the mass comes to rest under a friction law and a
+    /// change; `None` if it never does.
     pub(super) fn rest<K: Kind, L: Friction<K>>(
         &self,
         law: &L,
+        change: Option<&Change<K>>,
     ) -> Result<Option<Rest<K>>, Stop> {
-        rest(&self.path(), law, self.release())
+        match change {
+            Some(change) if change.moves() => rest_changed(
+                &self.path(),
+                law,
+                &change.forces,
+                self.release_changed(change),
+            ),
+            _ => rest(&self.path(), law, self.release()),
+        }
     }
 
     /// The ground the flow runs on.
@@ -296,19 +369,13 @@ impl Event {
 
     /// The distance that a recording itself shows \[m\]: its greatest
     /// position, or its speeds summed by the trapezoidal rule.
-    fn reach(&self, series: &Series) -> f64 {
+    pub(super) fn reach(&self, series: &Series) -> f64 {
         match series.quantity() {
             Quantity::Position => {
                 series.values().iter().copied().fold(0.0, f64::max)
             }
             Quantity::Velocity => {
-                let (mut time, mut speed) = (0.0, self.speed);
-                let mut distance = 0.0;
-                for (t, v) in series.times().iter().zip(series.values()) {
-                    distance += 0.5 * (v + speed) * (t - time);
-                    (time, speed) = (*t, *v);
-                }
-                distance
+                path_length(self.speed, series.times(), series.values())
             }
             Quantity::Acceleration => 0.0,
         }
@@ -353,6 +420,11 @@ impl Event {
 impl Event {
     /// Distance along the slope \[m\] at which the mass starts.
     pub fn start(&self) -> f64 {
-        Real::<crate::scalar::Plain>::new(self.distance).value()
+        self.distance
+    }
+
+    /// The speed at t = 0 \[m/s\].
+    pub fn release_speed(&self) -> f64 {
+        self.speed
     }
 }

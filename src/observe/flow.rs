@@ -76,7 +76,7 @@ impl<'a, K: Kind, L: Friction<K>> Flow<'a, K, L> {
     /// [`Stop::Reject`] where the law has no flow with these values.
     pub fn rest(&self) -> Result<Option<Rest<K>>, Stop> {
         self.friction.context().count_slide();
-        self.event.rest(self.friction.block())
+        self.event.rest(self.friction.block(), self.friction.change())
     }
 
     /// The distance along the slope from the release to where the mass comes

@@ -5,9 +5,11 @@
 //! [`Flow`] is the motion at the moments that those need.
 
 mod event;
+mod extent;
 mod flow;
 mod series;
 
 pub use event::{Event, EventBuilder};
+pub use extent::Extent;
 pub use flow::{Flow, Prediction, Recorded};
 pub use series::{Quantity, Series};

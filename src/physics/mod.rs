@@ -5,17 +5,21 @@
 //! 1). The track is a chain of pieces of constant slope, and on a piece every
 //! law of the form r = A + B u + C u^2 has an exact solution.
 
+pub mod forces;
 pub mod friction;
 pub mod track;
 
+mod changed;
 mod elementary;
 mod exact;
 mod numeric;
 mod walk;
 
+pub use changed::sample_changed;
+pub use forces::Forces;
 pub use friction::{Friction, Rate, Site, Sum, Varies};
 pub use track::Track;
-pub use walk::{Path, Release, Rest, State, rest, sample};
+pub use walk::{Path, Release, Rest, State, rest, rest_changed, sample};
 
 /// The acceleration of gravity \[m/s2\].
 pub const GRAVITY: f64 = 9.81;

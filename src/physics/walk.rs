@@ -5,7 +5,9 @@
 //! the exact family, the one in `numeric` the rest; sampling a flow at given
 //! times and following it to rest are written once, over both.
 
+use super::changed::ChangedWalker;
 use super::exact::{End, Force, Pace};
+use super::forces::Forces;
 use super::friction::{Friction, Rate, Site, Varies};
 use super::numeric::{NumericWalker, PLAIN, WITH_DERIVATIVES};
 use super::track::{Piece, Track};
@@ -120,6 +122,19 @@ pub fn rest<K: Kind, L: Friction<K>>(
         ),
         _ => follow(ExactWalker::new(path, law, release)?),
     }
+}
+
+/// The same with forces added to the law.
+///
+/// # Errors
+/// [`Stop::Reject`] where the law has no flow with these values.
+pub fn rest_changed<K: Kind, L: Friction<K>>(
+    path: &Path<'_>,
+    law: &L,
+    forces: &Forces<K>,
+    release: Release<K>,
+) -> Result<Option<Rest<K>>, Stop> {
+    follow(ChangedWalker::new(path, law, forces, release)?)
 }
 
 /// The ground a flow runs on: the track and the flow depth \[m\].

@@ -112,6 +112,19 @@ impl<K: Kind> Add for Rate<K> {
 }
 
 impl<K: Kind> Rate<K> {
+    /// All rates, times a factor.
+    #[must_use]
+    pub fn scaled(self, factor: Real<K>) -> Self {
+        Self {
+            mu: self.mu * factor,
+            pressed: self.pressed * factor,
+            constant: self.constant * factor,
+            linear: self.linear * factor,
+            quadratic: self.quadratic * factor,
+            growth: self.growth * factor,
+        }
+    }
+
     /// The resistance of a unit mass at `site` and `speed` \[m/s2\].
     pub fn resistance(&self, site: &Site, speed: Real<K>) -> Real<K> {
         let w = speed * speed;

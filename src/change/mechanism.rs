@@ -1,0 +1,160 @@
+//! Mechanisms: named changes with unknown amounts.
+//!
+//! A mechanism says its name, one plain sentence, what is unknown about it,
+//! and which [`Change`] given values make. It is written as a [`Candidate`]
+//! and one generic method, [`Missing::change`]; [`Mechanism`], object-safe,
+//! follows from those for every kind of number.
+
+use std::fmt::{self, Debug};
+
+use super::Change;
+use crate::physics::forces::Axis;
+use crate::prior::AnyPrior;
+use crate::scalar::{Grad, Kind, Plain, Real};
+
+/// What sort of thing a mechanism changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Family {
+    /// The forces on the mass.
+    Physics,
+    /// How the mass starts.
+    Start,
+    /// How the motion is measured.
+    Measurement,
+    /// How the values scatter.
+    Noise,
+}
+
+impl Family {
+    /// Its name in `diagnosis.json`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Physics => "physics",
+            Self::Start => "start",
+            Self::Measurement => "measurement",
+            Self::Noise => "noise",
+        }
+    }
+}
+
+impl fmt::Display for Family {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// Something unknown about a mechanism.
+#[derive(Debug, Clone)]
+pub struct Unknown {
+    /// Its name.
+    pub name: &'static str,
+    /// Its unit; "1" for a pure number.
+    pub unit: &'static str,
+    /// Its prior, scaled to the event.
+    pub prior: AnyPrior,
+}
+
+/// Where a mechanism acts, where it is confined.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach {
+    /// Along place or time.
+    pub axis: Axis,
+    /// From here \[m or s\].
+    pub from: f64,
+    /// To here; infinite where it goes on.
+    pub to: f64,
+}
+
+/// What there is to know of a mechanism before its amounts are known.
+pub trait Candidate: Debug + Send + Sync {
+    /// Its name, such as "friction-patch".
+    fn name(&self) -> &'static str;
+
+    /// What sort of thing it changes.
+    fn family(&self) -> Family;
+
+    /// What it says of the recording, in one plain sentence.
+    fn says(&self) -> &'static str;
+
+    /// What is unknown; the first is the amplitude, whose zero gives the
+    /// model back as it was.
+    fn unknowns(&self) -> Vec<Unknown>;
+
+    /// Along which axis, where there are variants over several.
+    fn coordinate(&self) -> Option<Axis> {
+        None
+    }
+
+    /// In which form, where there are several.
+    fn form(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// The stretch that given values confine it to.
+    fn reach(&self, _values: &[f64]) -> Option<Reach> {
+        None
+    }
+
+    /// The laws and noises that already are what it would add.
+    fn contained_in(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// The term it adds to du/dt, or the change it makes, as a formula.
+    fn formula(&self) -> String;
+}
+
+/// A candidate that can say which change its values make.
+pub trait Missing: Candidate {
+    /// The change with given values, in the order of
+    /// [`Candidate::unknowns`].
+    fn change<K: Kind>(&self, values: &[Real<K>]) -> Change<K>;
+}
+
+/// [`Missing::change`] for one kind of number.
+pub trait ChangeOf<K: Kind> {
+    /// The change with given values.
+    fn change_of(&self, values: &[Real<K>]) -> Change<K>;
+}
+
+impl<K: Kind, M: Missing> ChangeOf<K> for M {
+    fn change_of(&self, values: &[Real<K>]) -> Change<K> {
+        self.change(values)
+    }
+}
+
+/// A mechanism for every kind of number that models run with; every
+/// [`Missing`] is one.
+pub trait Mechanism:
+    Candidate
+    + ChangeOf<Plain>
+    + ChangeOf<Grad<2>>
+    + ChangeOf<Grad<4>>
+    + ChangeOf<Grad<8>>
+{
+}
+
+impl<M: Missing> Mechanism for M {}
+
+/// Kinds of number that a mechanism can be asked with.
+pub trait ChangeKind: Kind {
+    /// The change of a mechanism with given values.
+    fn change(
+        mechanism: &dyn Mechanism,
+        values: &[Real<Self>],
+    ) -> Change<Self>;
+}
+
+macro_rules! change_kind {
+    ($($kind:ty),*) => {
+        $(impl ChangeKind for $kind {
+            fn change(
+                mechanism: &dyn Mechanism,
+                values: &[Real<Self>],
+            ) -> Change<Self> {
+                mechanism.change_of(values)
+            }
+        })*
+    };
+}
+change_kind!(Plain, Grad<2>, Grad<4>, Grad<8>);

@@ -1,0 +1,42 @@
+//! Values that are means over a window of time.
+
+use super::unknown;
+use crate::change::{Candidate, Change, Family, Missing, Unknown};
+use crate::observe::Extent;
+use crate::prior::AnyPrior;
+use crate::scalar::{Kind, Real};
+
+/// Values that are means over a window of time.
+#[derive(Debug, Clone, Copy)]
+pub struct AveragingWindow {
+    /// What its prior is scaled to.
+    pub extent: Extent,
+}
+
+impl Candidate for AveragingWindow {
+    fn name(&self) -> &'static str {
+        "averaging-window"
+    }
+
+    fn family(&self) -> Family {
+        Family::Measurement
+    }
+
+    fn says(&self) -> &'static str {
+        "Each value is the mean over a while, not the value of that moment."
+    }
+
+    fn unknowns(&self) -> Vec<Unknown> {
+        vec![unknown("window", "s", AnyPrior::HalfNormal(1.0))]
+    }
+
+    fn formula(&self) -> String {
+        "mean of the last `window` seconds".to_owned()
+    }
+}
+
+impl Missing for AveragingWindow {
+    fn change<K: Kind>(&self, values: &[Real<K>]) -> Change<K> {
+        Change { window: values[0], ..Change::default() }
+    }
+}

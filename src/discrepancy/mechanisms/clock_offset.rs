@@ -1,0 +1,42 @@
+//! A recording whose clock is ahead or behind.
+
+use super::unknown;
+use crate::change::{Candidate, Change, Family, Missing, Unknown};
+use crate::observe::Extent;
+use crate::prior::AnyPrior;
+use crate::scalar::{Kind, Real};
+
+/// A recording whose clock is ahead or behind.
+#[derive(Debug, Clone, Copy)]
+pub struct ClockOffset {
+    /// What its prior is scaled to.
+    pub extent: Extent,
+}
+
+impl Candidate for ClockOffset {
+    fn name(&self) -> &'static str {
+        "clock-offset"
+    }
+
+    fn family(&self) -> Family {
+        Family::Measurement
+    }
+
+    fn says(&self) -> &'static str {
+        "The clock of the recording and the start of the motion do not agree."
+    }
+
+    fn unknowns(&self) -> Vec<Unknown> {
+        vec![unknown("ahead", "s", AnyPrior::Normal(0.0, 1.0))]
+    }
+
+    fn formula(&self) -> String {
+        "value(t - ahead)".to_owned()
+    }
+}
+
+impl Missing for ClockOffset {
+    fn change<K: Kind>(&self, values: &[Real<K>]) -> Change<K> {
+        Change { clock: values[0], ..Change::default() }
+    }
+}

@@ -1,0 +1,42 @@
+//! A mass that is already moving at t = 0.
+
+use super::unknown;
+use crate::change::{Candidate, Change, Family, Missing, Unknown};
+use crate::observe::Extent;
+use crate::prior::AnyPrior;
+use crate::scalar::{Kind, Real};
+
+/// A mass that is already moving at t = 0.
+#[derive(Debug, Clone, Copy)]
+pub struct InitialVelocity {
+    /// What its prior is scaled to.
+    pub extent: Extent,
+}
+
+impl Candidate for InitialVelocity {
+    fn name(&self) -> &'static str {
+        "initial-velocity"
+    }
+
+    fn family(&self) -> Family {
+        Family::Start
+    }
+
+    fn says(&self) -> &'static str {
+        "At t = 0 the mass was already faster than the event says."
+    }
+
+    fn unknowns(&self) -> Vec<Unknown> {
+        vec![unknown("speed", "m/s", AnyPrior::HalfNormal(5.0))]
+    }
+
+    fn formula(&self) -> String {
+        "u(0) + speed".to_owned()
+    }
+}
+
+impl Missing for InitialVelocity {
+    fn change<K: Kind>(&self, values: &[Real<K>]) -> Change<K> {
+        Change { start_speed: values[0], ..Change::default() }
+    }
+}

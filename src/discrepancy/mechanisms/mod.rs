@@ -1,0 +1,151 @@
+//! The catalogue: what may be missing from a model, one mechanism a file.
+
+mod ar1;
+mod averaging_window;
+mod clock_offset;
+mod cohesion;
+mod curvature;
+mod entrainment;
+mod friction_hardening;
+mod friction_patch;
+mod friction_step;
+mod heavy_tails;
+mod initial_velocity;
+mod release_position;
+mod sensor_drift;
+mod slope_bias;
+mod surge;
+mod turbulent_drag;
+mod unequal_variance;
+mod velocity_scale;
+mod velocity_weakening;
+mod viscous_drag;
+
+pub use ar1::Ar1;
+pub use averaging_window::AveragingWindow;
+pub use clock_offset::ClockOffset;
+pub use cohesion::Cohesion;
+pub use curvature::Curvature;
+pub use entrainment::Entrainment;
+pub use friction_hardening::FrictionHardening;
+pub use friction_patch::FrictionPatch;
+pub use friction_step::FrictionStep;
+pub use heavy_tails::HeavyTails;
+pub use initial_velocity::InitialVelocity;
+pub use release_position::ReleasePosition;
+pub use sensor_drift::SensorDrift;
+pub use slope_bias::SlopeBias;
+pub use surge::Surge;
+pub use turbulent_drag::TurbulentDrag;
+pub use unequal_variance::UnequalVariance;
+pub use velocity_scale::VelocityScale;
+pub use velocity_weakening::VelocityWeakening;
+pub use viscous_drag::ViscousDrag;
+
+use crate::change::{Change, Mechanism, Unknown};
+use crate::observe::Extent;
+use crate::physics::Rate;
+use crate::physics::forces::{Axis, STEPS, Shape, Stretch, Term};
+use crate::prior::AnyPrior;
+use crate::scalar::{Kind, Real};
+
+/// The prior sd of a force at the upper-quartile speed \[m/s2\].
+const FORCE: f64 = 1.5;
+/// The prior sd of a change of mu.
+const FRICTION: f64 = 0.15;
+/// The prior sd of a release's shift \[m\].
+const DISTANCE: f64 = 10.0;
+/// The prior sd of what a sensor has drifted by the end \[recorded unit\].
+const DRIFT: f64 = 2.0;
+
+/// Every mechanism that applies to an event of this extent under laws and
+/// noises of these names, variants one after the other.
+pub fn catalogue(
+    extent: &Extent,
+    blocks: &[String],
+) -> Vec<Box<dyn Mechanism>> {
+    let extent = *extent;
+    let (place, time, speed) = (Axis::Place, Axis::Time, Axis::Speed);
+    let mut all: Vec<Box<dyn Mechanism>> = vec![
+        Box::new(TurbulentDrag { extent }),
+        Box::new(ViscousDrag { extent }),
+        Box::new(Cohesion { extent }),
+        Box::new(Surge { extent }),
+        Box::new(Entrainment { extent }),
+        Box::new(InitialVelocity { extent }),
+        Box::new(ReleasePosition { extent }),
+        Box::new(ClockOffset { extent }),
+        Box::new(VelocityScale { extent }),
+        Box::new(SensorDrift { extent }),
+        Box::new(Ar1 { extent }),
+        Box::new(HeavyTails { extent }),
+        Box::new(UnequalVariance { extent, axis: time }),
+        Box::new(UnequalVariance { extent, axis: speed }),
+    ];
+    if extent.carried {
+        all.push(Box::new(VelocityWeakening { extent }));
+        all.push(Box::new(FrictionPatch { extent }));
+        for axis in [place, time] {
+            all.push(Box::new(FrictionStep { extent, axis }));
+            for saturates in [false, true] {
+                all.push(Box::new(FrictionHardening {
+                    extent,
+                    axis,
+                    saturates,
+                }));
+            }
+        }
+        all.push(Box::new(SlopeBias { extent }));
+    }
+    if extent.bends {
+        all.push(Box::new(Curvature { extent }));
+    }
+    if extent.averages {
+        all.push(Box::new(AveragingWindow { extent }));
+    }
+    let held = |name: &str| blocks.iter().any(|block| block == name);
+    all.retain(|m| !m.contained_in().iter().any(|name| held(name)));
+    all
+}
+
+fn unknown(
+    name: &'static str,
+    unit: &'static str,
+    prior: AnyPrior,
+) -> Unknown {
+    Unknown { name, unit, prior }
+}
+
+/// An amplitude, where its stretch begins, and how long that is.
+fn along_place(extent: &Extent, amplitude: Unknown) -> Vec<Unknown> {
+    let Extent { begin, run, duration, step, .. } = *extent;
+    let shortest = run * (step / duration).min(0.5);
+    vec![
+        amplitude,
+        unknown("from", "m", AnyPrior::Uniform(begin, begin + run)),
+        unknown("length", "m", AnyPrior::Uniform(shortest, run)),
+    ]
+}
+
+/// A rate added along the whole run.
+fn everywhere<K: Kind>(extent: &Extent, rate: Rate<K>) -> Change<K> {
+    of_term(extent, Term::everywhere(rate))
+}
+
+/// A rate added between two places or times.
+fn between<K: Kind>(
+    extent: &Extent,
+    rate: Rate<K>,
+    axis: Axis,
+    edges: [Real<K>; 2],
+) -> Change<K> {
+    let over = Stretch::Between(axis, edges);
+    of_term(extent, Term { over, ..Term::everywhere(rate) })
+}
+
+fn of_term<K: Kind>(extent: &Extent, term: Term<K>) -> Change<K> {
+    let mut change = Change::default();
+    change.forces.terms.push(term);
+    change.forces.step = extent.duration / STEPS;
+    change
+}

@@ -1,0 +1,61 @@
+//! A force during a window of time.
+
+use super::{FORCE, Rate, between, unknown};
+use crate::change::{Candidate, Change, Family, Missing, Reach, Unknown};
+use crate::observe::Extent;
+use crate::physics::forces::Axis;
+use crate::prior::AnyPrior;
+use crate::scalar::{Kind, Real};
+
+/// A force during a window of time.
+#[derive(Debug, Clone, Copy)]
+pub struct Surge {
+    /// What its priors are scaled to.
+    pub extent: Extent,
+}
+
+impl Candidate for Surge {
+    fn name(&self) -> &'static str {
+        "surge"
+    }
+
+    fn family(&self) -> Family {
+        Family::Physics
+    }
+
+    fn says(&self) -> &'static str {
+        "For a while the whole mass is pushed or braked, wherever it is."
+    }
+
+    fn unknowns(&self) -> Vec<Unknown> {
+        let amplitude = AnyPrior::Normal(0.0, FORCE);
+        let Extent { duration, step, .. } = self.extent;
+        let lasts = AnyPrior::Uniform(step.min(0.5 * duration), duration);
+        vec![
+            unknown("force", "m/s2", amplitude),
+            unknown("from", "s", AnyPrior::Uniform(0.0, duration)),
+            unknown("lasts", "s", lasts),
+        ]
+    }
+
+    fn coordinate(&self) -> Option<Axis> {
+        Some(Axis::Time)
+    }
+
+    fn reach(&self, values: &[f64]) -> Option<Reach> {
+        let (from, to) = (values[1], values[1] + values[2]);
+        Some(Reach { axis: Axis::Time, from, to })
+    }
+
+    fn formula(&self) -> String {
+        "+ force from t = `from` for `lasts`".to_owned()
+    }
+}
+
+impl Missing for Surge {
+    fn change<K: Kind>(&self, values: &[Real<K>]) -> Change<K> {
+        let rate = Rate { constant: -values[0], ..Rate::default() };
+        let edges = [values[1], values[1] + values[2]];
+        between(&self.extent, rate, Axis::Time, edges)
+    }
+}

@@ -1,0 +1,62 @@
+//! A model with mechanisms added to it from outside.
+
+use super::number::Number;
+use super::program::Program;
+use super::run::{Label, Run};
+use crate::block::List;
+use crate::change::{Change, Mechanism, Unknown};
+use crate::error::Outcome;
+use crate::scalar::Real;
+
+/// A program under the changes of mechanisms; itself a program, so that every
+/// backend runs it and several nest.
+///
+/// The mechanisms' parameters come first, each named
+/// `mechanism.parameter`.
+#[derive(Debug)]
+pub struct With<'a, P> {
+    program: &'a P,
+    mechanisms: Vec<(&'a dyn Mechanism, Vec<Unknown>)>,
+    names: Vec<String>,
+}
+
+impl<'a, P: Program> With<'a, P> {
+    /// Adds mechanisms to a program.
+    pub fn new(program: &'a P, mechanisms: &[&'a dyn Mechanism]) -> Self {
+        let mechanisms: Vec<_> =
+            mechanisms.iter().map(|m| (*m, m.unknowns())).collect();
+        let names = mechanisms
+            .iter()
+            .flat_map(|(m, unknowns)| {
+                unknowns.iter().map(|u| format!("{}.{}", m.name(), u.name))
+            })
+            .collect();
+        Self { program, mechanisms, names }
+    }
+
+    /// How many parameters the mechanisms add; they come first.
+    pub fn added(&self) -> usize {
+        self.names.len()
+    }
+
+    /// What is unknown about the mechanisms, in order.
+    pub fn unknowns(&self) -> impl Iterator<Item = &Unknown> {
+        self.mechanisms.iter().flat_map(|(_, unknowns)| unknowns)
+    }
+}
+
+impl<P: Program> Program for With<'_, P> {
+    fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
+        let mut names = self.names.iter();
+        let mut change = Change::default();
+        for (mechanism, unknowns) in &self.mechanisms {
+            let mut values = List::<Real<K>>::new();
+            for (unknown, name) in unknowns.iter().zip(&mut names) {
+                let label = Label::new(name, unknown.unit);
+                values.push(run.scalar(label, unknown.prior)?);
+            }
+            change = change.and(&K::change(*mechanism, &values));
+        }
+        run.under(&change, |run| self.program.run(run))
+    }
+}

@@ -1,0 +1,120 @@
+//! How large an event is: what default priors of mechanisms are scaled to.
+
+use super::event::Event;
+use super::series::Quantity;
+
+/// Where a recording leads, how long it lasts, and how fast it goes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extent {
+    /// Where the recorded run begins on the shared axis \[m\].
+    pub begin: f64,
+    /// How long it is \[m\].
+    pub run: f64,
+    /// The time of the last value \[s\].
+    pub duration: f64,
+    /// The upper quartile of the recorded speeds \[m/s\].
+    pub speed: f64,
+    /// The median time between values \[s\].
+    pub step: f64,
+    /// How far the release lies from the track's first point \[m\].
+    pub behind: f64,
+    /// Whether the ground carries the mass at all.
+    pub carried: bool,
+    /// Whether the ground bends along the run.
+    pub bends: bool,
+    /// Whether a mean over a window can be formed of what is recorded.
+    pub averages: bool,
+}
+
+impl Event {
+    /// The extent of its first recording.
+    pub fn extent(&self) -> Extent {
+        let Some(series) = self.recordings().next() else {
+            return self.extent_of(&[], 1.0, true);
+        };
+        let times = series.times();
+        let averages =
+            series.quantity() != Quantity::Position && series.window() == 0.0;
+        let speeds = match series.quantity() {
+            Quantity::Velocity => series.values().to_vec(),
+            Quantity::Position => rates(times, series.values()),
+            Quantity::Acceleration => {
+                sums(self.release_speed(), times, series.values())
+            }
+        };
+        let mut extent =
+            self.extent_of(&speeds, series.grid().step(), averages);
+        extent.duration = times.last().copied().unwrap_or(1.0).max(1e-3);
+        extent.run = match series.quantity() {
+            Quantity::Position => self.reach(series),
+            _ => path_length(self.release_speed(), times, &speeds),
+        }
+        .max(1e-3);
+        extent.bends = self.bends_until(extent.run);
+        extent
+    }
+
+    fn extent_of(&self, speeds: &[f64], step: f64, averages: bool) -> Extent {
+        let mut sorted = speeds.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let quartile = sorted.get(sorted.len() * 3 / 4).copied();
+        let pieces = self.track().pieces();
+        Extent {
+            begin: self.track().origin() + self.start(),
+            run: 1.0,
+            duration: 1.0,
+            speed: quartile.unwrap_or(1.0).max(0.1),
+            step,
+            behind: self.start(),
+            carried: pieces.iter().any(|piece| piece.load > 1e-6),
+            bends: false,
+            averages,
+        }
+    }
+
+    fn bends_until(&self, run: f64) -> bool {
+        let (from, to) = (self.start(), self.start() + run);
+        self.track()
+            .pieces()
+            .iter()
+            .filter(|p| p.start + p.length > from && p.start < to)
+            .any(|p| p.curvature.abs() > 1e-6)
+    }
+}
+
+/// Mean speeds between positions; the mass starts at 0.
+fn rates(times: &[f64], positions: &[f64]) -> Vec<f64> {
+    let mut before = (0.0, 0.0);
+    let mut rates = Vec::with_capacity(times.len());
+    for (&t, &s) in times.iter().zip(positions) {
+        if t > before.0 {
+            rates.push((s - before.1) / (t - before.0));
+        }
+        before = (t, s);
+    }
+    rates
+}
+
+/// Speeds from accelerations, by the trapezoidal rule.
+fn sums(speed: f64, times: &[f64], accelerations: &[f64]) -> Vec<f64> {
+    let (mut time, mut before) = (0.0, accelerations[0]);
+    let mut speed = speed;
+    let pairs = times.iter().zip(accelerations);
+    pairs
+        .map(|(&t, &a)| {
+            speed += 0.5 * (a + before) * (t - time);
+            (time, before) = (t, a);
+            speed
+        })
+        .collect()
+}
+
+/// The distance covered at given speeds, by the trapezoidal rule.
+pub(super) fn path_length(speed: f64, times: &[f64], speeds: &[f64]) -> f64 {
+    let (mut time, mut before, mut distance) = (0.0, speed, 0.0);
+    for (&t, &v) in times.iter().zip(speeds) {
+        distance += 0.5 * (v + before) * (t - time);
+        (time, before) = (t, v);
+    }
+    distance
+}

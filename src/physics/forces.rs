@@ -1,0 +1,269 @@
+//! Forces that a change adds to a friction law: what, and over which stretch.
+//!
+//! A term is a [`Rate`] times a shape. Its stretch and its shape may have
+//! unknown edges, so pieces of the motion are cut at places and times that
+//! carry derivatives. A shape that changes steadily is a staircase of
+//! [`STEPS`] steps over the run: on each the motion keeps its exact solution.
+
+use smallvec::SmallVec;
+
+use super::friction::Rate;
+use crate::block::List;
+use crate::scalar::{Kind, Real};
+
+/// The stairs of a shape that changes steadily: with 100 of them, half a step
+/// of the largest change looked for is below 1 % of it, and alternates in
+/// sign.
+pub const STEPS: f64 = 100.0;
+
+/// Places \[m\] and times \[s\] nearer than this are the same.
+const NEAR: f64 = 1e-9;
+
+/// Along what a force is laid out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Axis {
+    /// Distance along the slope, on the axis that events share \[m\].
+    Place,
+    /// Time since the release \[s\].
+    Time,
+    /// Speed \[m/s\].
+    Speed,
+}
+
+/// Where a term acts.
+#[derive(Debug, Clone, Copy)]
+pub enum Stretch<K: Kind> {
+    /// Along the whole run.
+    Everywhere,
+    /// Between two places or two times.
+    Between(Axis, [Real<K>; 2]),
+}
+
+/// How a term's strength varies where it acts.
+#[derive(Debug, Clone)]
+pub enum Shape<K: Kind> {
+    /// Not at all.
+    Even,
+    /// As (x - begin)/span: 0 where the run begins, 1 where it ends.
+    Linear(Axis, Range),
+    /// As 1 - exp(-(x - begin)/scale).
+    Saturating(Axis, Range, Real<K>),
+    /// As 1 - exp(-u/scale), u the speed.
+    WithSpeed(Real<K>),
+    /// A value in each of even cells of the range: constant in each along
+    /// place and time, and linear between their middles along the speed.
+    Cells(Axis, Range, List<Real<K>>),
+}
+
+/// A range of places \[m\], times \[s\] or speeds \[m/s\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    /// Where it begins.
+    pub begin: f64,
+    /// How long it is.
+    pub span: f64,
+}
+
+impl Range {
+    /// In which of so many even cells `x` lies, the outer ones beyond.
+    fn cell(&self, x: f64, cells: f64) -> f64 {
+        let step = self.span / cells;
+        ((x + NEAR - self.begin) / step).floor().clamp(0.0, cells - 1.0)
+    }
+
+    /// The middle of that cell, as a distance from the beginning.
+    fn stair(&self, x: f64) -> f64 {
+        (self.cell(x, STEPS) + 0.5) * self.span / STEPS
+    }
+
+    /// The first border between cells beyond `x`.
+    fn border(&self, x: f64, cells: f64) -> Option<f64> {
+        let step = self.span / cells;
+        let next = if x + NEAR < self.begin {
+            1.0
+        } else {
+            ((x + NEAR - self.begin) / step).floor() + 1.0
+        };
+        (next < cells).then(|| self.begin + next * step)
+    }
+}
+
+/// One force that a change adds.
+#[derive(Debug, Clone)]
+pub struct Term<K: Kind> {
+    /// What resists at full strength.
+    pub rate: Rate<K>,
+    /// Where.
+    pub over: Stretch<K>,
+    /// How it varies there.
+    pub shape: Shape<K>,
+}
+
+/// The state at which forces are asked for.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Moment<K: Kind> {
+    /// Distance on the shared axis [m].
+    pub(crate) place: f64,
+    /// Time [s].
+    pub(crate) time: f64,
+    /// Speed [m/s].
+    pub(crate) speed: Real<K>,
+}
+
+impl<K: Kind> Moment<K> {
+    fn along(&self, axis: Axis) -> f64 {
+        match axis {
+            Axis::Place => self.place,
+            Axis::Time => self.time,
+            Axis::Speed => self.speed.value(),
+        }
+    }
+}
+
+impl<K: Kind> Term<K> {
+    /// A term that acts everywhere alike.
+    pub fn everywhere(rate: Rate<K>) -> Self {
+        Self { rate, over: Stretch::Everywhere, shape: Shape::Even }
+    }
+
+    fn acts(&self, at: &Moment<K>) -> bool {
+        match self.over {
+            Stretch::Everywhere => true,
+            Stretch::Between(axis, [from, to]) => {
+                let x = at.along(axis) + NEAR;
+                from.value() <= x && x < to.value()
+            }
+        }
+    }
+
+    fn strength(&self, at: &Moment<K>) -> Real<K> {
+        match &self.shape {
+            Shape::Even => Real::new(1.0),
+            Shape::Linear(axis, range) => {
+                Real::new(range.stair(at.along(*axis)) / range.span)
+            }
+            Shape::Saturating(axis, range, scale) => {
+                let x = range.stair(at.along(*axis));
+                -(-x / *scale).exp_m1()
+            }
+            Shape::WithSpeed(scale) => -(-at.speed / *scale).exp_m1(),
+            Shape::Cells(Axis::Speed, range, values) => {
+                between_middles(at.speed, range, values)
+            }
+            Shape::Cells(axis, range, values) => {
+                let cell = range.cell(at.along(*axis), values.len() as f64);
+                values[cell as usize]
+            }
+        }
+    }
+
+    fn add_to(&self, rate: &mut Rate<K>, at: &Moment<K>) {
+        if self.acts(at) {
+            *rate = *rate + self.rate.scaled(self.strength(at));
+        }
+    }
+
+    /// The first place or time beyond `x` at which the term changes.
+    fn next(&self, axis: Axis, x: f64) -> Option<Real<K>> {
+        let edge = match self.over {
+            Stretch::Between(of, edges) if of == axis => {
+                edges.into_iter().find(|edge| edge.value() > x + NEAR)
+            }
+            _ => None,
+        };
+        let border = match &self.shape {
+            Shape::Linear(of, range) | Shape::Saturating(of, range, _)
+                if *of == axis =>
+            {
+                range.border(x, STEPS)
+            }
+            Shape::Cells(of, range, values) if *of == axis => {
+                range.border(x, values.len() as f64)
+            }
+            _ => None,
+        };
+        nearer(edge, border.map(Real::new))
+    }
+
+    /// Whether it varies with the speed in another way than its square.
+    fn bends(&self) -> bool {
+        let of_speed = matches!(
+            self.shape,
+            Shape::WithSpeed(_) | Shape::Cells(Axis::Speed, ..)
+        );
+        of_speed || !self.rate.linear.is_constantly_zero()
+    }
+}
+
+/// Linear between the middles of the cells, even beyond the outer ones.
+fn between_middles<K: Kind>(
+    x: Real<K>,
+    range: &Range,
+    values: &[Real<K>],
+) -> Real<K> {
+    let last = values.len() - 1;
+    let position =
+        (x - range.begin) * (values.len() as f64 / range.span) - 0.5;
+    if position <= 0.0 {
+        return values[0];
+    }
+    let cell = position.value() as usize;
+    if cell >= last {
+        return values[last];
+    }
+    values[cell] + (values[cell + 1] - values[cell]) * (position - cell as f64)
+}
+
+fn nearer<K: Kind>(a: Option<Real<K>>, b: Option<Real<K>>) -> Option<Real<K>> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(if b < a { b } else { a }),
+        (a, b) => a.or(b),
+    }
+}
+
+/// All the forces that a change adds, and how it tilts the ground.
+#[derive(Debug, Clone)]
+pub struct Forces<K: Kind> {
+    /// The terms, which add up.
+    pub terms: SmallVec<[Term<K>; 2]>,
+    /// By how much the ground is steeper than the track says \[radians\].
+    pub tilt: Real<K>,
+    /// Over what time \[s\] a force that varies with the speed is taken as
+    /// linear in its square.
+    pub step: f64,
+}
+
+impl<K: Kind> Default for Forces<K> {
+    fn default() -> Self {
+        Self {
+            terms: SmallVec::new(),
+            tilt: Real::new(0.0),
+            step: f64::INFINITY,
+        }
+    }
+}
+
+impl<K: Kind> Forces<K> {
+    /// Whether they change nothing.
+    pub fn is_none(&self) -> bool {
+        self.terms.is_empty() && self.tilt.is_constantly_zero()
+    }
+
+    pub(crate) fn bends(&self) -> bool {
+        self.terms.iter().any(Term::bends)
+    }
+
+    /// Adds what acts at a moment.
+    pub(crate) fn add_to(&self, rate: &mut Rate<K>, at: &Moment<K>) {
+        for term in &self.terms {
+            term.add_to(rate, at);
+        }
+    }
+
+    /// The first place or time beyond `x` at which a term changes.
+    pub(crate) fn next(&self, axis: Axis, x: f64) -> Option<Real<K>> {
+        self.terms
+            .iter()
+            .fold(None, |next, term| nearer(next, term.next(axis, x)))
+    }
+}
