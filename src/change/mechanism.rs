@@ -47,7 +47,7 @@ impl fmt::Display for Family {
 #[derive(Debug, Clone)]
 pub struct Unknown {
     /// Its name.
-    pub name: &'static str,
+    pub name: String,
     /// Its unit; "1" for a pure number.
     pub unit: &'static str,
     /// Its prior, scaled to the event.

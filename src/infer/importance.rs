@@ -99,7 +99,7 @@ impl ImportanceSampling {
             progress.advance(count as u64);
         }
         let found = population(posterior, &base, self.draws, seed.child(20))?;
-        self.conclude(posterior, &found, seed.child(21))
+        Self::conclude(posterior, &found, seed.child(21))
     }
 }
 
@@ -129,15 +129,15 @@ fn joined(
     (rows, weights)
 }
 
-fn normalised(particles: &[Particle]) -> Vec<f64> {
+pub(super) fn normalised(particles: &[Particle]) -> Vec<f64> {
     let logs = particles.iter().map(Particle::log_weight);
     let total = super::log_sum_exp(logs.clone());
     logs.map(|l| (l - total).exp()).collect()
 }
 
 impl ImportanceSampling {
-    fn conclude(
-        &self,
+    /// Evidence and draws from weighted particles.
+    pub(super) fn conclude(
         posterior: &Posterior<'_>,
         found: &[Particle],
         seed: Seed,

@@ -114,6 +114,50 @@ impl Mixture {
         best.and_then(|(_, fitted)| fitted.inflated())
     }
 
+    /// The mixture of given parts: weight, mean and covariance of each.
+    /// `None` where there are none.
+    pub(super) fn of(
+        parts: impl Iterator<Item = (f64, DVector<f64>, DMatrix<f64>)>,
+    ) -> Option<Self> {
+        let mut components: Vec<Component> = parts
+            .filter_map(|(weight, mean, covariance)| {
+                Component::new(weight, mean, &covariance)
+            })
+            .collect();
+        let logs = components.iter().map(|c| c.log_weight);
+        let total = log_sum_exp(logs.collect::<Vec<_>>().into_iter());
+        components.iter_mut().for_each(|c| c.log_weight -= total);
+        let mixture = (!components.is_empty()).then_some(Self { components });
+        mixture.and_then(|mixture| mixture.inflated())
+    }
+
+    /// The same components, each weighing what weighted draws say it holds:
+    /// one round of expectation and maximisation for the weights alone
+    /// (Douc, Guillin, Marin, Robert 2007).
+    #[must_use]
+    pub(super) fn reweighted<'z>(
+        &self,
+        draws: impl Iterator<Item = (&'z [f64], f64)>,
+    ) -> Self {
+        let mut totals = vec![0.0; self.components.len()];
+        for (z, weight) in draws {
+            let z = DVector::from_column_slice(z);
+            let logs: Vec<f64> =
+                self.components.iter().map(|c| c.log_density(&z)).collect();
+            let total = log_sum_exp(logs.iter().copied());
+            for (sum, log) in totals.iter_mut().zip(logs) {
+                *sum += weight * (log - total).exp();
+            }
+        }
+        // Half of the old weight stays: a round may have missed a part.
+        let mut components = self.components.clone();
+        for (component, total) in components.iter_mut().zip(totals) {
+            let before = component.log_weight.exp();
+            component.log_weight = (0.5 * (before + total)).ln();
+        }
+        Self { components }
+    }
+
     /// Whether two more components than it has, up to `count`, did not help.
     fn few(&self, count: usize) -> bool {
         count >= self.components.len() + 2

@@ -6,24 +6,28 @@
 //! a run is the same to the last bit on any number of threads.
 
 mod bridge;
+mod descent;
 mod importance;
 mod map;
 mod mh;
 mod mixture;
 #[cfg(feature = "nuts")]
 mod nuts;
+mod peaks;
 mod quadrature;
 mod reciprocal;
 mod smc;
 mod told;
 
 pub use bridge::Bridge;
+pub use descent::{Peak, climb};
 pub use importance::ImportanceSampling;
 pub use map::{Map, Mode};
 pub use mh::{MetropolisHastings, Proposal};
 pub use mixture::Mixture;
 #[cfg(feature = "nuts")]
 pub use nuts::Nuts;
+pub use peaks::{Peaks, Ridge};
 pub use quadrature::{LEVELS, Marginal, Quadrature};
 pub use reciprocal::ReciprocalImportance;
 pub use smc::Smc;

@@ -505,6 +505,23 @@ fn cholesky_factor(particles: &[Particle]) -> DMatrix<f64> {
         .map_or_else(|| DMatrix::from_diagonal(&diagonal), |c| c.l())
 }
 
+impl Smc {
+    /// One passage from a base that is known.
+    pub(super) fn from_base(
+        &self,
+        posterior: &Posterior<'_>,
+        base: Base,
+        seed: Seed,
+        progress: &dyn Progress,
+    ) -> Result<Inference> {
+        progress.begin("tempering from a fitted mixture", None);
+        let mut passage = Passage::new(posterior, self, base, seed.child(0))?;
+        passage.run(progress)?;
+        let method = "sequential Monte Carlo from a fitted mixture";
+        conclude(posterior, &passage, method, seed.child(1))
+    }
+}
+
 impl Backend for Smc {
     fn name(&self) -> &'static str {
         "smc"

@@ -39,6 +39,11 @@ impl<'a, P: Program> With<'a, P> {
         self.names.len()
     }
 
+    /// The mechanisms, in order.
+    pub fn mechanisms(&self) -> impl Iterator<Item = &'a dyn Mechanism> {
+        self.mechanisms.iter().map(|(mechanism, _)| *mechanism)
+    }
+
     /// What is unknown about the mechanisms, in order.
     pub fn unknowns(&self) -> impl Iterator<Item = &Unknown> {
         self.mechanisms.iter().flat_map(|(_, unknowns)| unknowns)

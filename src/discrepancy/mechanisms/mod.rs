@@ -108,12 +108,8 @@ pub fn catalogue(
     all
 }
 
-fn unknown(
-    name: &'static str,
-    unit: &'static str,
-    prior: AnyPrior,
-) -> Unknown {
-    Unknown { name, unit, prior }
+fn unknown(name: &str, unit: &'static str, prior: AnyPrior) -> Unknown {
+    Unknown { name: name.to_owned(), unit, prior }
 }
 
 /// An amplitude, where its stretch begins, and how long that is.

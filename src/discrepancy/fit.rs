@@ -1,0 +1,145 @@
+//! A model with mechanisms, fitted: evidence, draws, and the best place.
+
+use rand::RngExt;
+
+use crate::change::{Mechanism, Unknown};
+use crate::draws::Draws;
+use crate::error::{Error, Result};
+use crate::infer::{Backend, Peaks, Quiet};
+use crate::model::{Point, Posterior, Program, With};
+use crate::prior::{AnyPrior, Prior};
+use crate::scalar::{Plain, Real};
+use crate::seed::Seed;
+
+/// What a fit found.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// ln p(recording | model).
+    pub log_evidence: f64,
+    /// Its standard error.
+    pub se: f64,
+    /// Posterior draws as named, the mechanisms' parameters first.
+    pub draws: Draws,
+    /// The likeliest draw, on the real line.
+    pub best: Vec<f64>,
+    /// How many parameters the mechanisms have.
+    pub added: usize,
+    /// What to know before trusting it.
+    pub warnings: Vec<String>,
+}
+
+impl Fit {
+    /// Where the mechanisms' parameters are at the best place.
+    pub fn mechanism(&self) -> &[f64] {
+        &self.best[..self.added]
+    }
+
+    /// Where the model's own parameters are at the best place.
+    pub fn own(&self) -> &[f64] {
+        &self.best[self.added..]
+    }
+}
+
+/// Fits a program with mechanisms, looking for modes as told.
+///
+/// # Errors
+/// An improper prior, or a model that fails.
+pub fn fit<P: Program>(
+    program: &P,
+    mechanisms: &[&dyn Mechanism],
+    backend: &Peaks,
+    seed: Seed,
+) -> Result<Fit> {
+    let with = With::new(program, mechanisms);
+    let posterior = Posterior::new(&with)?;
+    let t0 = std::time::Instant::now();
+    let found = backend.explore(&posterior, seed, &Quiet)?;
+    if std::env::var("DBG").is_ok() {
+        eprintln!(
+            "{:?} {:?} {:?} {}",
+            mechanisms.iter().map(|m| m.name()).collect::<Vec<_>>(),
+            t0.elapsed(),
+            posterior.cost(),
+            found.evidence.as_ref().map_or("", |e| &e.method)
+        );
+    }
+    let (Some(draws), Some(evidence)) = (found.draws, found.evidence) else {
+        return Err(Error::inference("a fit without draws or evidence"));
+    };
+    Ok(Fit {
+        log_evidence: evidence.log,
+        se: evidence.se,
+        best: likeliest(&posterior, &draws)?,
+        draws,
+        added: with.added(),
+        warnings: found.warnings,
+    })
+}
+
+/// The draw with the highest density, on the real line.
+fn likeliest(posterior: &Posterior<'_>, draws: &Draws) -> Result<Vec<f64>> {
+    let mut best = (f64::NEG_INFINITY, Vec::new());
+    for row in draws.thinned(400) {
+        let density = posterior.density(Point::Natural(row))?.natural();
+        if best.1.is_empty() || density > best.0 {
+            best = (density, row.to_vec());
+        }
+    }
+    posterior.line(&best.1)
+}
+
+/// Even places in the prior of some unknowns, on the real line, with how far
+/// the next ones lie: Halton's points, shifted at random.
+pub(super) fn spread(
+    unknowns: &[Unknown],
+    count: usize,
+    seed: Seed,
+) -> Vec<(Vec<f64>, Vec<f64>)> {
+    let mut rng = seed.rng();
+    let shifts: Vec<f64> = unknowns.iter().map(|_| rng.random()).collect();
+    let step = (count as f64).powf(-1.0 / unknowns.len() as f64);
+    (1..=count as u64)
+        .map(|i| {
+            unknowns
+                .iter()
+                .zip(PRIMES)
+                .zip(&shifts)
+                .map(|((unknown, base), shift)| {
+                    let p = (radical_inverse(i, base) + shift).fract();
+                    place(&unknown.prior, p, step)
+                })
+                .unzip()
+        })
+        .collect()
+}
+
+/// The place on the line of a prior's quantile, and how far it is to those
+/// half a step of probability away.
+fn place(prior: &AnyPrior, p: f64, step: f64) -> (f64, f64) {
+    let edge = 0.25 * step;
+    let middle = p.clamp(edge, 1.0 - edge);
+    let below = on_line(prior, (middle - 0.5 * step).max(0.5 * edge));
+    let above = on_line(prior, (middle + 0.5 * step).min(1.0 - 0.5 * edge));
+    (on_line(prior, middle), 0.6 * (above - below))
+}
+
+const PRIMES: [u64; 12] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37];
+
+/// The digits of `i` in a base, mirrored at the point (Halton 1960).
+fn radical_inverse(mut i: u64, base: u64) -> f64 {
+    let (mut value, mut digit) = (0.0, 1.0 / base as f64);
+    while i > 0 {
+        value += (i % base) as f64 * digit;
+        i /= base;
+        digit /= base as f64;
+    }
+    value
+}
+
+/// The place on the real line of a prior's quantile.
+fn on_line(prior: &AnyPrior, p: f64) -> f64 {
+    let x = prior.quantile(p).unwrap_or(0.0);
+    let support = <AnyPrior as Prior<Plain>>::support(prior);
+    let line = support.to_line(Real::<Plain>::new(x).value());
+    if line.is_finite() { line } else { 0.0 }
+}
