@@ -37,6 +37,9 @@ pub struct Change<K: Kind> {
     pub noise: Alteration<K>,
     /// Along what a spread of the noise rises.
     pub spread_along: Covariate,
+    /// How many values of a series are known; those after them are not
+    /// scored.
+    pub known: Option<usize>,
 }
 
 /// Along what the spread of the noise may rise.
@@ -71,6 +74,7 @@ impl<K: Kind> Default for Change<K> {
             drift: zero,
             noise: Alteration::default(),
             spread_along: Covariate::Time(1.0),
+            known: None,
         }
     }
 }
@@ -103,6 +107,7 @@ impl<K: Kind> Change<K> {
         both.forces.step = both.forces.step.min(other.forces.step);
         both.start_speed += other.start_speed;
         both.start_place += other.start_place;
+        both.known = both.known.or(other.known);
         both.clock += other.clock;
         both.window += other.window;
         both.scale += other.scale;

@@ -108,6 +108,28 @@ fn ridge(
     Ridge { held, places }
 }
 
+/// A model whose mechanisms are known, with its fit.
+pub(super) struct Known<'a> {
+    pub(super) mechanisms: &'a [&'a dyn Mechanism],
+    pub(super) fit: &'a Fit,
+}
+
+/// Starts and a ridge for one more mechanism, all else where it is best.
+fn ways(
+    added: (&dyn Mechanism, &Fit),
+    before: &[f64],
+    after: &[f64],
+    seed: Seed,
+) -> (Vec<Vec<f64>>, Ridge) {
+    let unknowns = added.0.unknowns();
+    let joined = |place: &[f64]| [before, place, after].concat();
+    let mut from = vec![joined(added.1.mechanism())];
+    let anywhere =
+        spread(&unknowns, climbs(unknowns.len()) / 2, seed.child(0));
+    from.extend(anywhere.iter().map(|(place, _)| joined(place)));
+    (from, ridge(&unknowns, before, after, seed.child(1)))
+}
+
 /// Fits a pair: from the best of either, with the other anywhere.
 ///
 /// # Errors
@@ -118,26 +140,31 @@ pub fn pair<P: Program>(
     fits: [&Fit; 2],
     seed: Seed,
 ) -> Result<Fit> {
-    let unknowns: [Vec<Unknown>; 2] = mechanisms.map(|m| m.unknowns());
-    let mut from = Vec::new();
-    let mut ridges = Vec::new();
-    for (k, known) in fits.iter().enumerate() {
-        let seed = seed.child(k as u64);
-        let other = &unknowns[1 - k];
-        let (best, own) = (known.mechanism(), known.own());
-        // The mechanisms' parameters come in their order.
-        let joined = |place: &[f64]| match k {
-            0 => [best, place, own].concat(),
-            _ => [place, best, own].concat(),
-        };
-        from.push(joined(fits[1 - k].mechanism()));
-        let anywhere = spread(other, climbs(other.len()) / 2, seed.child(0));
-        from.extend(anywhere.iter().map(|(place, _)| joined(place)));
-        ridges.push(match k {
-            0 => ridge(other, best, own, seed.child(1)),
-            _ => ridge(other, &[], &[best, own].concat(), seed.child(1)),
-        });
-    }
+    let [a, b] = [(mechanisms[0], fits[0]), (mechanisms[1], fits[1])];
+    let second = ways(b, a.1.mechanism(), a.1.own(), seed.child(0));
+    let after = [b.1.mechanism(), b.1.own()].concat();
+    let first = ways(a, &[], &after, seed.child(1));
+    let backend = Peaks {
+        starts: 0,
+        from: [second.0, first.0].concat(),
+        ridges: vec![second.1, first.1],
+        ..Peaks::default()
+    };
+    fit(program, &mechanisms, &backend, seed.child(9))
+}
+
+/// Fits one mechanism more, from the best of those that are known.
+pub(super) fn extend<P: Program>(
+    program: &P,
+    known: &Known<'_>,
+    added: (&dyn Mechanism, &Fit),
+    seed: Seed,
+) -> Result<Fit> {
+    let (before, after) = (known.fit.mechanism(), known.fit.own());
+    let (from, ridge) = ways(added, before, after, seed.child(0));
+    let mut mechanisms = known.mechanisms.to_vec();
+    mechanisms.push(added.0);
+    let ridges = vec![ridge];
     let backend = Peaks { starts: 0, from, ridges, ..Peaks::default() };
     fit(program, &mechanisms, &backend, seed.child(9))
 }

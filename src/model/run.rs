@@ -261,15 +261,22 @@ impl<'r, K: Kind> Run<'r, K> {
             residuals.push(value - shown);
             covariate.push(change.spread_along.of(time, shown));
         })?;
+        let known = change.known.map(|n| series.first(n.min(series.len())));
+        let series = match &known {
+            Some(Ok(first)) => first,
+            Some(Err(error)) => return Err(Stop::Fail(error.clone())),
+            None => series,
+        };
+        let residuals = &residuals[..series.len()];
         if change.noise.is_none() {
-            return self.score(series, &residuals, noise);
+            return self.score(series, residuals, noise);
         }
         let altered = Altered {
             base: noise,
             change: change.noise,
             covariate: &covariate,
         };
-        self.score(series, &residuals, &altered)
+        self.score(series, residuals, &altered)
     }
 
     /// Scores residuals and lets the listener hear them.

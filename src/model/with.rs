@@ -18,6 +18,7 @@ pub struct With<'a, P> {
     program: &'a P,
     mechanisms: Vec<(&'a dyn Mechanism, Vec<Unknown>)>,
     names: Vec<String>,
+    known: Option<usize>,
 }
 
 impl<'a, P: Program> With<'a, P> {
@@ -31,7 +32,13 @@ impl<'a, P: Program> With<'a, P> {
                 unknowns.iter().map(|u| format!("{}.{}", m.name(), u.name))
             })
             .collect();
-        Self { program, mechanisms, names }
+        Self { program, mechanisms, names, known: None }
+    }
+
+    /// The same, knowing only the first values of each series.
+    #[must_use]
+    pub fn knowing(self, count: usize) -> Self {
+        Self { known: Some(count), ..self }
     }
 
     /// How many parameters the mechanisms add; they come first.
@@ -53,7 +60,7 @@ impl<'a, P: Program> With<'a, P> {
 impl<P: Program> Program for With<'_, P> {
     fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
         let mut names = self.names.iter();
-        let mut change = Change::default();
+        let mut change = Change { known: self.known, ..Change::default() };
         for (mechanism, unknowns) in &self.mechanisms {
             let mut values = List::<Real<K>>::new();
             for (unknown, name) in unknowns.iter().zip(&mut names) {

@@ -1,0 +1,443 @@
+//! The whole diagnosis: check, locate, attribute, model, show.
+
+use std::time::Instant;
+
+use rayon::prelude::*;
+use statrs::distribution::{ContinuousCDF, Normal};
+
+use super::attribute::{Attribution, Known, attribute, extend, pair};
+use super::before_and_after::{Shown, rows_of, show};
+use super::diagnosis::{
+    Baseline, Corrected, Diagnosis, Improvement, Judged, Pair, Pictured,
+    Verdict,
+};
+use super::fit::Fit;
+use super::judge::{Odds, group, judge, label, told, verdict};
+use super::locate::{FreeForce, locate};
+use super::mechanisms::catalogue;
+use super::place::mismatch;
+use crate::change::Mechanism;
+use crate::draws::{self, summarise};
+use crate::error::Result;
+use crate::infer::Progress;
+use crate::model::{Assembled, Program};
+use crate::observe::Event;
+use crate::physics::forces::Axis;
+use crate::seed::Seed;
+
+/// What to know of a model before it is diagnosed.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Where all random numbers start.
+    pub seed: u64,
+    /// The user's odds.
+    pub odds: Odds,
+    /// The friction law's name, a sum of blocks: "coulomb + turbulent".
+    pub friction: String,
+    /// The noise's name: "ar(1)".
+    pub noise: String,
+}
+
+impl Options {
+    /// Those of a model put together from an event file.
+    pub fn of(model: &Assembled, seed: u64) -> Self {
+        Self {
+            seed,
+            odds: Odds::new(),
+            friction: model.friction(),
+            noise: model.noise(),
+        }
+    }
+
+    /// The blocks that the model already has, without their arguments.
+    fn blocks(&self) -> Vec<String> {
+        let noise = self.noise.split('(').next().unwrap_or_default();
+        self.friction
+            .split('+')
+            .chain([noise])
+            .map(|name| name.trim().to_owned())
+            .collect()
+    }
+}
+
+/// In log10: by how much a pair must beat the best single mechanism, and a
+/// third one the pair.
+const RISE: f64 = 1.0;
+/// Of how many mechanisms all pairs are weighed.
+const BEST: usize = 5;
+/// A probability of `none` above which no pair is looked at.
+const SURE: f64 = 0.9;
+
+/// What was chosen to be added to the model.
+struct Chosen {
+    /// Which of the catalogue.
+    which: Vec<usize>,
+    fit: Fit,
+}
+
+/// Finds where a model and a recording differ and what was left out.
+///
+/// # Errors
+/// An improper prior, an event without a recording, or a model that fails.
+pub fn diagnose<P: Program>(
+    program: &P,
+    event: &Event,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Diagnosis> {
+    let begun = Instant::now();
+    let seed = Seed::new(options.seed);
+    let extent = event.extent();
+    let all = catalogue(&extent, &options.blocks());
+    let found = attribute(program, &all, seed.child(0), progress)?;
+    progress.begin("locating the mismatch", None);
+    let forces = [Axis::Place, Axis::Time, Axis::Speed]
+        .into_par_iter()
+        .enumerate()
+        .map(|(i, axis)| {
+            let seed = seed.child(10 + i as u64);
+            locate(program, &extent, axis, found.none.own(), seed)
+        })
+        .collect::<Result<Vec<FreeForce>>>()?;
+    let judged = judge(&found, &all, &forces, &options.odds);
+    let verdict = verdict(&judged);
+    progress.begin("weighing pairs", None);
+    let chosen = choose(program, &all, &found, &judged, verdict, seed)?;
+    progress.begin("showing", None);
+    let before = Shown {
+        mechanisms: Vec::new(),
+        fit: &found.none,
+        first: seed.child(30),
+    };
+    let after = chosen.as_ref().map(|chosen| Shown {
+        mechanisms: chosen.which.iter().map(|&i| all[i].as_ref()).collect(),
+        fit: &chosen.fit,
+        first: seed.child(40),
+    });
+    let mut diagnosis = told_of(program, event, before, after)?;
+    diagnosis.baseline.friction.clone_from(&options.friction);
+    diagnosis.baseline.noise.clone_from(&options.noise);
+    diagnosis.verdict = verdict;
+    diagnosis.group = group(&judged);
+    if verdict == Verdict::Unexplained {
+        diagnosis.selected = vec!["unknown".into()];
+    }
+    let reaches = chosen.as_ref().map(|c| reaches(c, &all));
+    diagnosis.mismatch = mismatch(
+        verdict,
+        &reaches.unwrap_or_default(),
+        &forces,
+        event,
+        &diagnosis.pictured[0],
+    );
+    diagnosis.corrected = corrected(&chosen, &all, options);
+    diagnosis.separating = separating(&diagnosis.group, &judged);
+    diagnosis.mechanisms = judged;
+    diagnosis.forces = forces;
+    diagnosis.seconds = begun.elapsed().as_secs_f64();
+    Ok(diagnosis)
+}
+
+/// The model to go on with: the best mechanism where there is one, or a pair
+/// or three where the evidence rises.
+fn choose<P: Program>(
+    program: &P,
+    all: &[Box<dyn Mechanism>],
+    found: &Attribution,
+    judged: &[Judged],
+    verdict: Verdict,
+    seed: Seed,
+) -> Result<Option<Chosen>> {
+    if matches!(verdict, Verdict::Adequate | Verdict::Unexplained) {
+        return Ok(None);
+    }
+    let best = best_variants(all, found, judged);
+    let Some(&first) = best.first() else { return Ok(None) };
+    let single =
+        Chosen { which: vec![first], fit: found.candidates[first].clone() };
+    let none = judged.iter().find(|m| m.name == "none");
+    if none.is_some_and(|m| m.probability > SURE) {
+        return Ok(Some(single));
+    }
+    let Some(two) = best_pair(program, all, found, &best, seed)? else {
+        return Ok(Some(single));
+    };
+    if !rises(&two.fit, &single.fit) {
+        return Ok(Some(single));
+    }
+    let three = best_third(program, all, found, &best, &two, seed)?;
+    match three {
+        Some(three) if rises(&three.fit, &two.fit) => Ok(Some(three)),
+        _ => Ok(Some(two)),
+    }
+}
+
+fn rises(more: &Fit, less: &Fit) -> bool {
+    more.log_evidence - less.log_evidence > RISE * std::f64::consts::LN_10
+}
+
+/// The best variant of each of the best names, most evidence first.
+fn best_variants(
+    all: &[Box<dyn Mechanism>],
+    found: &Attribution,
+    judged: &[Judged],
+) -> Vec<usize> {
+    let mut names: Vec<&Judged> = judged
+        .iter()
+        .filter(|m| m.name != "none" && m.name != "unknown")
+        .collect();
+    names.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    let evidence = |i: &usize| found.candidates[*i].log_evidence;
+    names
+        .iter()
+        .take(BEST)
+        .filter_map(|m| {
+            (0..all.len())
+                .filter(|&i| all[i].name() == m.name)
+                .max_by(|a, b| evidence(a).total_cmp(&evidence(b)))
+        })
+        .collect()
+}
+
+fn best_pair<P: Program>(
+    program: &P,
+    all: &[Box<dyn Mechanism>],
+    found: &Attribution,
+    best: &[usize],
+    seed: Seed,
+) -> Result<Option<Chosen>> {
+    let pairs: Vec<(usize, usize)> = (0..best.len())
+        .flat_map(|i| (i + 1..best.len()).map(move |j| (best[i], best[j])))
+        .collect();
+    let fits = pairs
+        .into_par_iter()
+        .map(|(a, b)| {
+            let seed = seed.child(1000 + (a * all.len() + b) as u64);
+            let mechanisms = [all[a].as_ref(), all[b].as_ref()];
+            let fits = [&found.candidates[a], &found.candidates[b]];
+            let fit = pair(program, mechanisms, fits, seed)?;
+            Ok(Chosen { which: vec![a, b], fit })
+        })
+        .collect::<Result<Vec<_>>>()?;
+    Ok(most_evidence(fits))
+}
+
+fn best_third<P: Program>(
+    program: &P,
+    all: &[Box<dyn Mechanism>],
+    found: &Attribution,
+    best: &[usize],
+    two: &Chosen,
+    seed: Seed,
+) -> Result<Option<Chosen>> {
+    let known: Vec<&dyn Mechanism> =
+        two.which.iter().map(|&i| all[i].as_ref()).collect();
+    let fits = best
+        .par_iter()
+        .filter(|i| !two.which.contains(i))
+        .map(|&i| {
+            let seed = seed.child(5000 + i as u64);
+            let known = Known { mechanisms: &known, fit: &two.fit };
+            let added = (all[i].as_ref(), &found.candidates[i]);
+            let fit = extend(program, &known, added, seed)?;
+            let which = [two.which.clone(), vec![i]].concat();
+            Ok(Chosen { which, fit })
+        })
+        .collect::<Result<Vec<_>>>()?;
+    Ok(most_evidence(fits))
+}
+
+fn most_evidence(fits: Vec<Chosen>) -> Option<Chosen> {
+    fits.into_iter()
+        .max_by(|a, b| a.fit.log_evidence.total_cmp(&b.fit.log_evidence))
+}
+
+/// Where the chosen mechanisms are confined to, by the medians of their
+/// edges.
+fn reaches(
+    chosen: &Chosen,
+    all: &[Box<dyn Mechanism>],
+) -> Vec<crate::change::Reach> {
+    let rows = rows_of(&chosen.fit.draws);
+    let mut first = 0;
+    let mut reaches = Vec::new();
+    for &i in &chosen.which {
+        let count = all[i].unknowns().len();
+        let edges: Vec<_> = rows
+            .iter()
+            .filter_map(|row| all[i].reach(&row[first..first + count]))
+            .collect();
+        first += count;
+        let Some(one) = edges.first() else { continue };
+        let median = |of: fn(&crate::change::Reach) -> f64| {
+            let mut sorted: Vec<f64> = edges.iter().map(of).collect();
+            sorted.sort_by(f64::total_cmp);
+            sorted[sorted.len() / 2]
+        };
+        reaches.push(crate::change::Reach {
+            axis: one.axis,
+            from: median(|r| r.from),
+            to: median(|r| r.to),
+        });
+    }
+    reaches
+}
+
+/// Before, after, and what both predict.
+fn told_of<P: Program>(
+    program: &P,
+    event: &Event,
+    before: Shown<'_>,
+    after: Option<Shown<'_>>,
+) -> Result<Diagnosis> {
+    let old = show(program, event, &before)?;
+    let new = match &after {
+        Some(after) => show(program, event, after)?,
+        None => old.clone(),
+    };
+    let fits = (before.fit, after.as_ref().map_or(before.fit, |a| a.fit));
+    let pairs = |of: fn(&super::before_and_after::Figures) -> f64| Pair {
+        before: of(&old),
+        after: of(&new),
+    };
+    let gain = fits.1.log_evidence - fits.0.log_evidence;
+    let mut warnings = fits.0.warnings.clone();
+    warnings.extend(fits.1.warnings.iter().cloned());
+    warnings.dedup();
+    Ok(Diagnosis {
+        event: event.name().to_owned(),
+        baseline: Baseline {
+            log_evidence: fits.0.log_evidence,
+            rmse: old.rmse,
+            ljung_box_p: old.ljung_box_p,
+            shapiro_wilk_p: shapiro_wilk(&old.innovations),
+            predictive_p: largest_p(&old.innovations),
+            stationary_sd: stationary_sd(&fits.0.draws),
+            instrument: instrument(event),
+            ..Baseline::default()
+        },
+        selected: after.iter().flat_map(Shown::names).collect(),
+        improvement: Improvement {
+            log10_bayes_factor: gain / std::f64::consts::LN_10,
+            rmse: pairs(|f| f.rmse),
+            elpd: pairs(|f| f.elpd),
+            heldout_rmse: pairs(|f| f.heldout_rmse),
+            coverage90: pairs(|f| f.coverage90),
+            ljung_box_p: pairs(|f| f.ljung_box_p),
+        },
+        parameters: told(&summarise(&fits.1.draws), None),
+        pictured: vec![pictured(event, old, new)],
+        warnings,
+        ..Diagnosis::default()
+    })
+}
+
+fn pictured(
+    event: &Event,
+    before: super::before_and_after::Figures,
+    after: super::before_and_after::Figures,
+) -> Pictured {
+    let mut pictured = Pictured {
+        event: event.name().to_owned(),
+        places: after.places,
+        before: before.bands,
+        after: after.bands,
+        ..Pictured::default()
+    };
+    if let Some(series) = event.recordings().next() {
+        pictured.quantity = series.quantity().name().to_owned();
+        pictured.unit = series.quantity().unit().to_owned();
+        pictured.times = series.times().to_vec();
+        pictured.values = series.values().to_vec();
+    }
+    let (x, z) = event.track().points();
+    pictured.track = (x.to_vec(), z.to_vec());
+    pictured
+}
+
+fn shapiro_wilk(innovations: &[f64]) -> f64 {
+    let most = innovations.len().min(5000);
+    draws::shapiro_wilk(&innovations[..most]).map_or(f64::NAN, |test| test.p)
+}
+
+/// The probability of an innovation as large as the largest among as many.
+fn largest_p(innovations: &[f64]) -> f64 {
+    let largest = innovations.iter().map(|d| d.abs()).fold(0.0, f64::max);
+    let outside = 2.0 * Normal::standard().cdf(-largest);
+    -(innovations.len() as f64 * (-outside).ln_1p()).exp_m1()
+}
+
+/// The sd of AR(1) errors themselves, sqrt(sigma2/(1 - phi^2)): the median.
+fn stationary_sd(draws: &draws::Draws) -> Option<f64> {
+    let names = draws.names();
+    let column = |name: &str| names.iter().position(|n| n == name);
+    let (phi, sigma2) = (column("phi")?, column("sigma2")?);
+    let mut sds: Vec<f64> = rows_of(draws)
+        .iter()
+        .map(|row| (row[sigma2] / (1.0 - row[phi].powi(2))).sqrt())
+        .collect();
+    sds.sort_by(f64::total_cmp);
+    sds.get(sds.len() / 2).copied()
+}
+
+/// The mean known error of the recording's values.
+fn instrument(event: &Event) -> Option<f64> {
+    let errors = event.recordings().next()?.grid().standard_errors()?;
+    Some(errors.iter().sum::<f64>() / errors.len() as f64)
+}
+
+/// The corrected model, written out.
+fn corrected(
+    chosen: &Option<Chosen>,
+    all: &[Box<dyn Mechanism>],
+    options: &Options,
+) -> Corrected {
+    let mut equation =
+        vec![format!("du/dt = g sin(theta) - r, r of {}", options.friction)];
+    let Some(chosen) = chosen else {
+        return Corrected { equation, ..Corrected::default() };
+    };
+    let mechanisms: Vec<&dyn Mechanism> =
+        chosen.which.iter().map(|&i| all[i].as_ref()).collect();
+    for mechanism in &mechanisms {
+        equation.push(format!(
+            "{}: {}",
+            mechanism.name(),
+            mechanism.formula()
+        ));
+    }
+    Corrected {
+        equation,
+        model: super::paste::model_text(&mechanisms, options),
+        labels: mechanisms.iter().map(|m| label(*m)).collect(),
+    }
+}
+
+/// The recording that would tell the members of a group apart.
+fn separating(group: &[String], judged: &[Judged]) -> Option<String> {
+    if group.len() < 2 {
+        return None;
+    }
+    let of = |name: &String| judged.iter().find(|m| m.name == *name);
+    let members: Vec<&Judged> = group.iter().filter_map(of).collect();
+    let has = |kind: &str| members.iter().any(|m| m.kind == kind);
+    let along =
+        |axis: Axis| members.iter().any(|m| m.coordinate == Some(axis));
+    Some(if has("start") || has("measurement") {
+        "A second recording with another sensor, or of a mass released at a \
+         known place and moment, would tell them apart."
+            .into()
+    } else if along(Axis::Time) && along(Axis::Place) {
+        "A recording from another start would tell them apart: what belongs \
+         to a place stays there, what belongs to a moment moves along."
+            .into()
+    } else if has("noise") {
+        "A longer recording, or a second sensor on the same mass, would tell \
+         them apart."
+            .into()
+    } else {
+        "A recording at other speeds over the same ground, from a higher \
+         start or on another slope, would tell them apart."
+            .into()
+    })
+}
