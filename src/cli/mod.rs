@@ -6,6 +6,7 @@
 mod bench;
 mod calibrate;
 mod compare;
+mod diagnose;
 mod new;
 mod predictive;
 mod progress;
@@ -36,6 +37,8 @@ enum Command {
     Calibrate(calibrate::Arguments),
     /// Compare models by their evidence and by how well they predict
     Compare(compare::Arguments),
+    /// Find where recording and model differ and what was left out
+    Diagnose(diagnose::Arguments),
     /// Run the motion with given parameter values
     Simulate(simulate::Arguments),
     /// Write a commented event to start from
@@ -147,6 +150,7 @@ pub fn main_with(laws: &Laws) -> ExitCode {
     let outcome = match &cli.command {
         Command::Calibrate(arguments) => arguments.run(laws),
         Command::Compare(arguments) => arguments.run(laws),
+        Command::Diagnose(arguments) => arguments.run(laws),
         Command::Simulate(arguments) => arguments.run(laws),
         Command::New(arguments) => arguments.run(),
         Command::Bench(arguments) => arguments.run(laws),

@@ -6,7 +6,7 @@ use super::fit::{Fit, fit, spread};
 use crate::change::{Mechanism, Unknown};
 use crate::error::Result;
 use crate::infer::{Peaks, Progress, Ridge};
-use crate::model::Program;
+use crate::model::{Posterior, Program, With};
 use crate::prior::AnyPrior;
 use crate::seed::Seed;
 
@@ -56,7 +56,8 @@ pub fn attribute<P: Program>(
         .enumerate()
         .map(|(i, mechanism)| {
             let seed = seed.child(1 + i as u64);
-            let fit = single(program, mechanism.as_ref(), &none, seed);
+            let fit = single(program, mechanism.as_ref(), &none, seed)
+                .map_err(|error| error.within(mechanism.name()));
             progress.advance(1);
             fit
         })
@@ -130,7 +131,8 @@ fn ways(
     (from, ridge(&unknowns, before, after, seed.child(1)))
 }
 
-/// Fits a pair: from the best of either, with the other anywhere.
+/// Fits a pair: from the best of either, with the other anywhere; `None`
+/// where it does not promise an evidence of about the hurdle.
 ///
 /// # Errors
 /// As [`attribute`].
@@ -138,8 +140,9 @@ pub fn pair<P: Program>(
     program: &P,
     mechanisms: [&dyn Mechanism; 2],
     fits: [&Fit; 2],
+    hurdle: f64,
     seed: Seed,
-) -> Result<Fit> {
+) -> Result<Option<Fit>> {
     let [a, b] = [(mechanisms[0], fits[0]), (mechanisms[1], fits[1])];
     let second = ways(b, a.1.mechanism(), a.1.own(), seed.child(0));
     let after = [b.1.mechanism(), b.1.own()].concat();
@@ -150,7 +153,35 @@ pub fn pair<P: Program>(
         ridges: vec![second.1, first.1],
         ..Peaks::default()
     };
-    fit(program, &mechanisms, &backend, seed.child(9))
+    fit_if_worth(program, &mechanisms, &backend, hurdle, seed.child(9))
+}
+
+/// How far, in ln, a normal approximation may fall short of an evidence.
+const SHORT: f64 = 3.0;
+
+/// Fits mechanisms only where the peaks promise an evidence of about the
+/// hurdle: most combinations are far below it.
+fn fit_if_worth<P: Program>(
+    program: &P,
+    mechanisms: &[&dyn Mechanism],
+    backend: &Peaks,
+    hurdle: f64,
+    seed: Seed,
+) -> Result<Option<Fit>> {
+    let with = With::new(program, mechanisms);
+    let posterior = Posterior::new(&with)?;
+    let outlook = backend.outlook(&posterior, seed.child(0))?;
+    if std::env::var("DBG").is_ok() {
+        eprintln!("pair {:?} {outlook} {hurdle}", mechanisms.iter().map(|m| m.name()).collect::<Vec<_>>());
+    }
+    if outlook < hurdle - SHORT {
+        return Ok(None);
+    }
+    let found = fit(program, mechanisms, backend, seed.child(1))?;
+    if std::env::var("DBG").is_ok() {
+        eprintln!("   ln Z {}", found.log_evidence);
+    }
+    Ok(Some(found))
 }
 
 /// Fits one mechanism more, from the best of those that are known.
@@ -158,13 +189,14 @@ pub(super) fn extend<P: Program>(
     program: &P,
     known: &Known<'_>,
     added: (&dyn Mechanism, &Fit),
+    hurdle: f64,
     seed: Seed,
-) -> Result<Fit> {
+) -> Result<Option<Fit>> {
     let (before, after) = (known.fit.mechanism(), known.fit.own());
     let (from, ridge) = ways(added, before, after, seed.child(0));
     let mut mechanisms = known.mechanisms.to_vec();
     mechanisms.push(added.0);
     let ridges = vec![ridge];
     let backend = Peaks { starts: 0, from, ridges, ..Peaks::default() };
-    fit(program, &mechanisms, &backend, seed.child(9))
+    fit_if_worth(program, &mechanisms, &backend, hurdle, seed.child(9))
 }

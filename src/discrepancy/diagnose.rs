@@ -1,5 +1,6 @@
 //! The whole diagnosis: check, locate, attribute, model, show.
 
+use std::f64::consts::LN_10;
 use std::time::Instant;
 
 use rayon::prelude::*;
@@ -159,7 +160,8 @@ fn choose<P: Program>(
     if none.is_some_and(|m| m.probability > SURE) {
         return Ok(Some(single));
     }
-    let Some(two) = best_pair(program, all, found, &best, seed)? else {
+    let Some(two) = best_pair(program, all, found, &best, &single.fit, seed)?
+    else {
         return Ok(Some(single));
     };
     if !rises(&two.fit, &single.fit) {
@@ -173,7 +175,7 @@ fn choose<P: Program>(
 }
 
 fn rises(more: &Fit, less: &Fit) -> bool {
-    more.log_evidence - less.log_evidence > RISE * std::f64::consts::LN_10
+    more.log_evidence - less.log_evidence > RISE * LN_10
 }
 
 /// The best variant of each of the best names, most evidence first.
@@ -204,6 +206,7 @@ fn best_pair<P: Program>(
     all: &[Box<dyn Mechanism>],
     found: &Attribution,
     best: &[usize],
+    single: &Fit,
     seed: Seed,
 ) -> Result<Option<Chosen>> {
     let pairs: Vec<(usize, usize)> = (0..best.len())
@@ -215,8 +218,9 @@ fn best_pair<P: Program>(
             let seed = seed.child(1000 + (a * all.len() + b) as u64);
             let mechanisms = [all[a].as_ref(), all[b].as_ref()];
             let fits = [&found.candidates[a], &found.candidates[b]];
-            let fit = pair(program, mechanisms, fits, seed)?;
-            Ok(Chosen { which: vec![a, b], fit })
+            let hurdle = single.log_evidence + RISE * LN_10;
+            let fit = pair(program, mechanisms, fits, hurdle, seed)?;
+            Ok(fit.map(|fit| Chosen { which: vec![a, b], fit }))
         })
         .collect::<Result<Vec<_>>>()?;
     Ok(most_evidence(fits))
@@ -239,16 +243,18 @@ fn best_third<P: Program>(
             let seed = seed.child(5000 + i as u64);
             let known = Known { mechanisms: &known, fit: &two.fit };
             let added = (all[i].as_ref(), &found.candidates[i]);
-            let fit = extend(program, &known, added, seed)?;
+            let hurdle = two.fit.log_evidence + RISE * LN_10;
+            let fit = extend(program, &known, added, hurdle, seed)?;
             let which = [two.which.clone(), vec![i]].concat();
-            Ok(Chosen { which, fit })
+            Ok(fit.map(|fit| Chosen { which, fit }))
         })
         .collect::<Result<Vec<_>>>()?;
     Ok(most_evidence(fits))
 }
 
-fn most_evidence(fits: Vec<Chosen>) -> Option<Chosen> {
+fn most_evidence(fits: Vec<Option<Chosen>>) -> Option<Chosen> {
     fits.into_iter()
+        .flatten()
         .max_by(|a, b| a.fit.log_evidence.total_cmp(&b.fit.log_evidence))
 }
 
@@ -318,7 +324,7 @@ fn told_of<P: Program>(
         },
         selected: after.iter().flat_map(Shown::names).collect(),
         improvement: Improvement {
-            log10_bayes_factor: gain / std::f64::consts::LN_10,
+            log10_bayes_factor: gain / LN_10,
             rmse: pairs(|f| f.rmse),
             elpd: pairs(|f| f.elpd),
             heldout_rmse: pairs(|f| f.heldout_rmse),

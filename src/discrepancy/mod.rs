@@ -10,8 +10,10 @@ mod diagnosis;
 mod fit;
 mod judge;
 mod locate;
+mod page;
 mod paste;
 mod place;
+mod words;
 
 pub use attribute::{Attribution, attribute, pair};
 pub use diagnose::{Options, diagnose};
@@ -22,3 +24,5 @@ pub use diagnosis::{
 pub use fit::{Fit, fit};
 pub use judge::Odds;
 pub use locate::{CELLS, FreeForce, locate};
+pub use page::page;
+pub use words::summary;

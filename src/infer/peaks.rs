@@ -160,6 +160,23 @@ impl Backend for Peaks {
 }
 
 impl Peaks {
+    /// About the log evidence, from the normal approximations of the peaks
+    /// alone.
+    ///
+    /// # Errors
+    /// What no other parameter values would mend.
+    pub fn outlook(
+        &self,
+        posterior: &Posterior<'_>,
+        seed: Seed,
+    ) -> Result<f64> {
+        let parts = self.parts_of_peaks(posterior, seed)?;
+        let half = 0.5 * posterior.dimension() as f64;
+        let scale = half * std::f64::consts::TAU.ln();
+        let logs: Vec<f64> = parts.iter().map(|p| p.log + scale).collect();
+        Ok(super::log_sum_exp(logs.iter().copied()))
+    }
+
     /// The peaks that all starts lead to.
     fn parts_of_peaks(
         &self,

@@ -74,7 +74,11 @@ impl<K: Kind, N: ?Sized> Altered<'_, K, N> {
         if distance == 1.0 {
             return (phi, Real::new(1.0));
         }
-        let a = phi.max(0.0).powf(distance);
+        if phi <= 0.0 {
+            // Between two steps there is none with phi below 0.
+            return (Real::new(0.0), Real::new(1.0));
+        }
+        let a = phi.powf(distance);
         let wider = (1.0 - a * a) / (1.0 - phi * phi);
         (a, wider.sqrt())
     }

@@ -1,0 +1,8 @@
+//! A diagnosis as a page.
+
+use super::diagnosis::Diagnosis;
+
+/// The page.
+pub fn page(diagnosis: &Diagnosis) -> String {
+    diagnosis.event.clone()
+}
