@@ -82,6 +82,7 @@
 
 pub mod block;
 pub mod calibrate;
+pub mod challenge;
 pub mod cli;
 pub mod context;
 pub mod declared;
