@@ -24,6 +24,9 @@ const LEAST_MU: f64 = 0.02;
 const TRIES: u64 = 5000;
 /// How often an effect is fitted into the run that it makes.
 const ROUNDS: usize = 12;
+/// An avalanche: the least upper quartile of the baseline's speeds, and the
+/// greatest speed with the effect \[m/s\].
+const SPEEDS: (f64, f64) = (8.0, 65.0);
 /// The room above every release, so that one may be stated too low \[m\].
 const HEADROOM: f64 = 45.0;
 
@@ -261,12 +264,7 @@ impl Stage {
         let depth = (rng.random_range(1.0..3.0_f64) * 100.0).round() / 100.0;
         let law = draw_law(order.kind, depth, rng)?;
         let shape = Shape::ALL[rng.random_range(0..Shape::ALL.len())];
-        let void = match order.kind.void {
-            Void::Never => false,
-            Void::OnIncline => true,
-            Void::OnInclineUnderCoulomb => matches!(law, Law::Coulomb { .. }),
-        };
-        if void && shape == Shape::Incline {
+        if hides(shape, &law, order.kind.void) {
             return None;
         }
         let ground = Ground::draw(shape, rng);
@@ -334,6 +332,20 @@ impl Stage {
     }
 }
 
+/// Whether a track hides an effect entirely.
+fn hides(shape: Shape, law: &Law, void: Void) -> bool {
+    let coulomb = matches!(law, Law::Coulomb { .. });
+    let incline = shape == Shape::Incline;
+    match void {
+        Void::Never => false,
+        Void::OnIncline => incline,
+        Void::OnInclineUnderCoulomb => incline && coulomb,
+        Void::WithoutBends => {
+            matches!(shape, Shape::Incline | Shape::Parabola | Shape::Sigmoid)
+        }
+    }
+}
+
 /// The baseline, its parameters from the priors in the event's file, but for
 /// their tails.
 fn draw_law(kind: &Kind, depth: f64, rng: &mut Rng) -> Option<Law> {
@@ -354,6 +366,9 @@ impl Scenery {
     fn draw(order: &Order, sizes: [f64; 2], seed: Seed) -> Option<Self> {
         let stage = Stage::draw(order, &mut seed.child(0).rng())?;
         let mut runs = stage.run(&super::effects::Nothing)?;
+        if stage.scene(sizes, &runs).upper < SPEEDS.0 {
+            return None;
+        }
         for _ in 0..ROUNDS {
             let scene = stage.scene(sizes, &runs);
             let mut rng = seed.child(1).rng();
@@ -470,7 +485,7 @@ fn alike(a: &Scene<'_>, b: &Scene<'_>) -> bool {
         && near(a.duration, b.duration)
 }
 
-/// Whether friction is never next to nothing, and every mass is recorded in
+/// Whether friction is never next to nothing, no mass is absurdly fast, and every mass is recorded in
 /// at least half of the stretch where the effect acts.
 fn possible(effect: &dyn Effect, runs: &[(Run, Clock)]) -> bool {
     let half = |from: f64, to: f64, end: f64| {
@@ -486,7 +501,8 @@ fn possible(effect: &dyn Effect, runs: &[(Run, Clock)]) -> bool {
                 half(from, to, run.rest.map_or(end, |rest| rest.min(end)))
             }
         };
-        met && run.least_mu >= LEAST_MU
+        let fastest = clock.times().map(|t| run.speed(t)).fold(0.0, f64::max);
+        met && run.least_mu >= LEAST_MU && fastest <= SPEEDS.1
     })
 }
 

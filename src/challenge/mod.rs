@@ -9,7 +9,19 @@ mod case;
 mod effects;
 mod files;
 mod ground;
+mod json;
 mod motion;
+mod page;
+mod power;
+mod score;
+mod trial;
 
 pub use case::{Case, Coordinate, Interval, Mix, Recording, Truth, cases};
 pub use effects::Class;
+pub use json::challenge_json;
+pub use page::{page, power_page, words};
+pub use power::{PowerTable, mechanisms, power_cases};
+pub use score::{
+    Answer, CalibrationBin, EffectScore, Outcome, OutsideScore, Score, Share,
+};
+pub use trial::{Diagnose, Scored, run};

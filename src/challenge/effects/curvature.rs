@@ -12,7 +12,7 @@ pub(super) const KIND: Kind = Kind {
     signed: false,
     unit: "1",
     coulomb_only: false,
-    void: Void::OnIncline,
+    void: Void::WithoutBends,
     make,
 };
 

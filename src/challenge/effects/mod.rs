@@ -100,6 +100,9 @@ pub(super) enum Void {
     Never,
     /// A constant slope, on which it changes nothing at all.
     OnIncline,
+    /// All but those with bends: on a smooth track the load that a bend adds
+    /// is less than a hundredth of the weight.
+    WithoutBends,
     /// A constant slope under Coulomb friction, where it is the same as
     /// another mu in every value: nobody could find it.
     OnInclineUnderCoulomb,
