@@ -74,6 +74,7 @@
 //! | [`elpd`], [`io`], [`report`] | prediction of what was left out; event files in; tables, pictures and pages out |
 //! | [`calibrate`], [`sbc`] | a whole calibration; whether inference can be trusted |
 //! | [`mod@reproduce`] | the paper's study, computed again |
+//! | [`challenge`] | hidden effects, made without the engine, and the score |
 //! | [`cli`] | the command: nothing below it prints |
 //!
 //! The reasons for all this are in `DESIGN.md`, the invariants in

@@ -238,7 +238,7 @@ impl Clock {
 
 /// Ground, law, effect and motion of a case that is possible.
 struct Scenery {
-    ground: Ground,
+    /// The track that the files have.
     survey: Ground,
     law: Law,
     depth: f64,
@@ -322,7 +322,6 @@ impl Stage {
         Scene {
             size: sizes[0],
             other: sizes[1],
-            law: self.law,
             ground: &self.ground,
             upper: speeds[3 * speeds.len() / 4],
             from: -least(&|(run, _)| -run.place(0.0)),
@@ -390,8 +389,8 @@ impl Scenery {
         runs: Vec<(Run, Clock)>,
     ) -> Self {
         let Stage { ground, law, depth, releases, .. } = stage;
-        let survey = effect.survey(&ground).unwrap_or_else(|| ground.clone());
-        Self { ground, survey, law, depth, effect, releases, runs }
+        let survey = effect.survey(&ground).unwrap_or(ground);
+        Self { survey, law, depth, effect, releases, runs }
     }
 
     /// The case; nothing if a recording would show more than the track has.

@@ -4,6 +4,10 @@
 //! What makes the events shares no code with what diagnoses them: no track,
 //! no integrator, no friction law, no noise of the crate is used here, only
 //! random numbers and the words of the file format.
+//!
+//! - [`cases`] draws events; [`power_cases`] one effect at given sizes.
+//! - [`run`] puts them to a diagnosis and scores its [`Answer`]s.
+//! - [`words`], [`page`], [`challenge_json`] and [`PowerTable`] tell it.
 
 mod case;
 mod effects;

@@ -100,7 +100,12 @@ pub fn page(scored: &Scored, mix: Mix, seed: u64) -> String {
         (failures_table(&failures(&scored.outcomes)))
         p.note { "Tracks, motion, effects and noise come from code that \
                   shares nothing with the diagnosis. Sizes are uniform in \
-                  their ranges; none was left out for being hard." }
+                  their ranges and drawn before anything else; none is left \
+                  out for being weak. Not drawn are tracks on which an effect \
+                  is nothing at all, or the same as another mu in every \
+                  value: constant slopes for a release elsewhere, for a \
+                  bend's load, and under Coulomb friction for cohesion, \
+                  scale, drift and slope." }
     };
     standalone("couloir challenge", &body)
 }
@@ -221,14 +226,16 @@ fn failures_table(failures: &[&Outcome]) -> Markup {
         @if failures.is_empty() { p { "Nothing." } } @else {
             div.wide { table {
                 thead { tr {
-                    @for heading in ["case", "hidden", "answered",
-                        "probability", "located", "error / noise [m/s]"] {
-                        th scope="col" { (heading) }
+                    th scope="col" { "case" }
+                    @for heading in ["hidden", "answered", "located"] {
+                        th.left scope="col" { (heading) }
                     }
+                    th scope="col" { "error / noise [m/s]" }
                 } }
                 tbody { @for o in failures { (failure_row(o)) } }
             } }
-            p.note { "In brackets the rest of the group. Error: of the \
+            p.note { "Answered: what came first, its probability, and in \
+                      brackets the rest of the group. Error: of the \
                       corrected model, root mean square, beside that of the \
                       noise itself." }
         }
@@ -250,11 +257,10 @@ fn failure_row(o: &Outcome) -> Markup {
             td { (o.case) }
             td.said { (hidden(&o.truth)) }
             td.said {
-                (name)
+                (name) ", " (two(p))
                 @if !rest.is_empty() { " (" (rest.join(", ")) ")" }
             }
-            td { (two(p)) }
-            td { (located.join(", ")) }
+            td.said { (located.join(", ")) }
             td { (two(o.answer.rmse_after)) " / " (two(o.truth.noise_rms)) }
         }
     }

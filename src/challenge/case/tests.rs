@@ -79,3 +79,18 @@ fn sizes_are_spread_over_their_range() {
         assert_eq!(back > 150, kind.signed, "{}", kind.name);
     }
 }
+
+#[test]
+fn two_recordings_share_the_track_and_not_the_start() {
+    let x = |r: &Recording| {
+        let line = r.files[0].1.lines().find(|l| l.starts_with("x = "));
+        line.map(str::to_owned).unwrap()
+    };
+    for case in cases(20, 9, Mix::Two).unwrap() {
+        let [a, b] = &case.recordings[..] else { panic!("two") };
+        assert_eq!(a.files[1], b.files[1]);
+        assert_ne!(x(a), x(b));
+        assert_ne!(a.files[2], b.files[2]);
+        assert_ne!(a.folder, b.folder);
+    }
+}

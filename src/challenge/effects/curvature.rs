@@ -37,7 +37,7 @@ impl Effect for Curvature {
     fn load(&self, at: &Moment) -> f64 {
         let s = at.s.clamp(0.0, (self.kappa.len() - 2) as f64);
         let (i, part) = (s as usize, s.fract());
-        let (a, b) = (self.kappa[i], self.kappa[(i + 1)]);
+        let (a, b) = (self.kappa[i], self.kappa[i + 1]);
         self.factor * (a + part * (b - a)) * at.u * at.u
     }
 }

@@ -36,7 +36,7 @@ use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::ground::Ground;
-use super::motion::{Law, Moment, Run, Start};
+use super::motion::{Moment, Run, Start};
 use crate::seed::Rng;
 
 pub(super) use none::Nothing;
@@ -144,7 +144,6 @@ pub(super) struct Scene<'a> {
     pub(super) size: f64,
     /// Another size, for what each recording has of its own.
     pub(super) other: f64,
-    pub(super) law: Law,
     pub(super) ground: &'a Ground,
     /// The upper quartile of the speeds \[m/s\].
     pub(super) upper: f64,

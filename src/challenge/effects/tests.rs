@@ -2,18 +2,19 @@
 
 use super::*;
 use crate::challenge::ground::Shape;
-use crate::challenge::motion::{STEP, slide};
+use crate::challenge::motion::{Law, STEP, slide};
 use crate::seed::Seed;
+
+const LAW: Law = Law::Coulomb { mu: 0.35 };
 
 fn ground() -> Ground {
     Ground::draw(Shape::Bends, &mut Seed::new(8).rng())
 }
 
 fn scene(ground: &Ground, size: f64) -> Scene<'_> {
-    let law = Law::Coulomb { mu: 0.35 };
     let (upper, from, to, duration) = (20.0, 50.0, 180.0, 12.0);
     let other = size;
-    Scene { size, other, law, ground, upper, from, to, duration }
+    Scene { size, other, ground, upper, from, to, duration }
 }
 
 /// Speeds and the errors upon them, with an effect of a size.
@@ -23,7 +24,7 @@ fn recorded(kind: &Kind, size: f64) -> (Vec<f64>, Vec<f64>, Ground) {
     let scene = scene(&ground, size);
     let effect = (kind.make)(&scene, &mut seed.rng()).unwrap();
     let start = effect.start(Start { place: 50.0, speed: 0.0 }, 0);
-    let run = slide(&ground, &scene.law, &*effect, start, 12.0, STEP);
+    let run = slide(&ground, &LAW, &*effect, start, 12.0, STEP);
     let at = |i: i32| effect.read(&run, 0.1 * f64::from(i), 0);
     let values: Vec<f64> = (1..110).map(at).collect();
     let noise = effect.noise(0.3, &values, &mut seed.child(1).rng());
@@ -82,4 +83,21 @@ fn correlated_errors_have_their_variance() {
     };
     assert!((product(0) - 0.09).abs() < 0.006);
     assert!((product(1) / product(0) - 0.8).abs() < 0.02);
+}
+
+#[test]
+fn half_the_step_gives_the_same_speeds_with_every_effect() {
+    let ground = ground();
+    for kind in CATALOGUE.into_iter().chain(OUTSIDE) {
+        let scene = scene(&ground, kind.range.1);
+        let effect = (kind.make)(&scene, &mut Seed::new(2).rng()).unwrap();
+        let start = effect.start(Start { place: 50.0, speed: 0.0 }, 0);
+        let run = |step| slide(&ground, &LAW, &*effect, start, 20.0, step);
+        let (whole, half) = (run(STEP), run(0.5 * STEP));
+        for k in 1..200 {
+            let t = 0.1 * f64::from(k);
+            let change = whole.speed(t) - half.speed(t);
+            assert!(change.abs() < 1e-4, "{} {t} {change}", kind.name);
+        }
+    }
 }

@@ -34,20 +34,21 @@ fn make(scene: &Scene<'_>, rng: &mut Rng) -> Option<Box<dyn Effect>> {
 }
 
 impl Effect for Unequal {
-    /// `sd` is the geometric mean of the least and the greatest.
+    /// `sd` is the root mean square of the values' own.
     fn noise(&self, sd: f64, values: &[f64], rng: &mut Rng) -> Vec<f64> {
         let most = values.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         let count = values.len() as f64;
-        normal(values.len(), rng)
-            .into_iter()
+        let part = |(i, value): (usize, &f64)| match self.after {
+            Some(share) => f64::from(i as f64 >= share * count),
+            None => (value / most).clamp(0.0, 1.0),
+        };
+        let own: Vec<f64> = values
+            .iter()
             .enumerate()
-            .map(|(i, z)| {
-                let part = match self.after {
-                    Some(share) => f64::from(i as f64 >= share * count),
-                    None => (values[i] / most).clamp(0.0, 1.0),
-                };
-                sd * (self.growth * (part - 0.5)).exp() * z
-            })
-            .collect()
+            .map(|place| (self.growth * part(place)).exp())
+            .collect();
+        let square = own.iter().map(|x| x * x).sum::<f64>() / count;
+        let normal = normal(values.len(), rng).into_iter();
+        normal.zip(&own).map(|(z, own)| sd * own * z / square.sqrt()).collect()
     }
 }
