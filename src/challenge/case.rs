@@ -9,6 +9,7 @@ use super::effects::{
 use super::files;
 use super::ground::{Ground, Shape};
 use super::motion::{Law, Run, STEP, Start, slide};
+use super::visible::{Shown, baseline};
 use crate::error::{Error, Result};
 use crate::seed::{Rng, Seed};
 
@@ -74,6 +75,11 @@ pub struct Truth {
     pub noise_sd: f64,
     /// Root mean square of the errors in the recordings \[m/s\].
     pub noise_rms: f64,
+    /// By how much the log likelihood of the truth exceeds the greatest that
+    /// the baseline reaches with independent normal errors: about the most
+    /// that a diagnosis can gain, and next to nothing where the recording
+    /// does not show the effect.
+    pub gain: f64,
 }
 
 /// One recording as a user would have it.
@@ -403,19 +409,20 @@ impl Scenery {
         seed: Seed,
     ) -> Option<Case> {
         let mut rng = seed.child(2).rng();
-        let (mut recordings, mut squares, mut values) = (Vec::new(), 0.0, 0);
+        let (mut recordings, mut shown) = (Vec::new(), Vec::new());
+        let mut noise = Noise { sd, ..Noise::default() };
         for (which, (run, clock)) in self.runs.iter().enumerate() {
             let times: Vec<f64> = clock.times().collect();
             let read = |t: &f64| self.effect.read(run, *t, which);
             let clean: Vec<f64> = times.iter().map(read).collect();
             let errors = self.effect.noise(sd, &clean, &mut rng);
-            squares += errors.iter().map(|e| e * e).sum::<f64>();
-            values += errors.len();
-            let seen: Vec<f64> =
+            noise.note(&*self.effect, &errors, &clean);
+            let values: Vec<f64> =
                 clean.iter().zip(&errors).map(|(v, e)| v + e).collect();
             let x = self.releases[which];
-            let room = self.survey.length() - self.survey.along(x);
-            if distance(&times, &seen) > 0.98 * room {
+            let from = self.survey.along(x);
+            if distance(&times, &values) > 0.98 * (self.survey.length() - from)
+            {
                 return None;
             }
             let folder = format!("{name}-{}", ["a", "b"][which % 2]);
@@ -426,17 +433,25 @@ impl Scenery {
                 depth: self.depth,
                 law: &self.law,
                 times: &times,
-                values: &seen,
+                values: &values,
             };
             let files = sheet.files();
             recordings.push(Recording { folder, files });
+            shown.push(Shown { from, times, values });
         }
-        let rms = (squares / values as f64).sqrt();
-        let truth = self.truth(order.kind, size, (sd, rms));
+        let best = baseline(&self.survey, &self.law, &shown);
+        let truth = self.truth(order.kind, size, &noise, best);
         Some(Case { name: name.to_owned(), truth, recordings })
     }
 
-    fn truth(&self, kind: &Kind, size: f64, noise: (f64, f64)) -> Truth {
+    /// `best`: the log likelihood of the best baseline.
+    fn truth(
+        &self,
+        kind: &Kind,
+        size: f64,
+        noise: &Noise,
+        best: f64,
+    ) -> Truth {
         let greatest = kind.range.1.max(f64::MIN_POSITIVE);
         Truth {
             effect: kind.name,
@@ -445,8 +460,9 @@ impl Scenery {
             size,
             fraction: size.abs() / greatest,
             unit: kind.unit,
-            noise_sd: noise.0,
-            noise_rms: noise.1,
+            noise_sd: noise.sd,
+            noise_rms: (noise.squares / noise.count as f64).sqrt(),
+            gain: noise.log_density - best,
         }
     }
 
@@ -473,6 +489,25 @@ impl Scenery {
                 Some(Interval { coordinate, from, to, time_from, time_to })
             }
         }
+    }
+}
+
+/// The errors of all recordings of a case.
+#[derive(Debug, Default)]
+struct Noise {
+    /// The instrument's standard deviation \[m/s\].
+    sd: f64,
+    /// The sum of squares \[m2/s2\].
+    squares: f64,
+    count: usize,
+    log_density: f64,
+}
+
+impl Noise {
+    fn note(&mut self, effect: &dyn Effect, errors: &[f64], values: &[f64]) {
+        self.squares += errors.iter().map(|e| e * e).sum::<f64>();
+        self.count += errors.len();
+        self.log_density += effect.log_density(self.sd, errors, values);
     }
 }
 

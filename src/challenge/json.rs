@@ -20,6 +20,11 @@ pub fn challenge_json(scored: &Scored) -> Value {
         "in_group": s.in_group.value(),
         "detected": s.detected.value(),
         "rmse_within": s.within_noise.value(),
+        "visible": {
+            "cases": s.in_group_visible.of,
+            "top1": s.top1_visible.value(),
+            "in_group": s.in_group_visible.value(),
+        },
         "standard_errors": errors(s),
         "calibration": s.bins.iter().map(bin).collect::<Vec<_>>(),
         "effects": s.effects.iter().map(effect).collect::<Map<_, _>>(),
@@ -57,6 +62,7 @@ fn bin(bin: &CalibrationBin) -> Value {
 fn effect(e: &EffectScore) -> (String, Value) {
     let value = json!({
         "cases": e.first.of,
+        "visible": e.visible.hits,
         "top1": e.first.value(),
         "in_group": e.in_group.value(),
         "detected": e.detected.value(),
@@ -74,6 +80,7 @@ fn answer(o: &Outcome) -> Value {
         "size": o.truth.size,
         "unit": o.truth.unit,
         "noise_sd": o.truth.noise_sd,
+        "gain": o.truth.gain,
         "answer": name,
         "probability": probability,
         "verdict": o.answer.verdict,

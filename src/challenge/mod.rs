@@ -19,6 +19,7 @@ mod page;
 mod power;
 mod score;
 mod trial;
+mod visible;
 
 pub use case::{Case, Coordinate, Interval, Mix, Recording, Truth, cases};
 pub use effects::Class;

@@ -256,17 +256,27 @@ impl<'a> Slider<'a> {
         (s + h * mean_speed, u + h * (a1 + 2.0 * (a2 + a3) + a4) / 6.0)
     }
 
-    /// The time step after which `of` the state is 0, which it passes within
-    /// `h`.
+    /// The time step after which `of` the state is 0, which it passes upwards
+    /// within `h`: by false position, the end that stays put halved in weight
+    /// (the Illinois rule). The result is not before the zero.
     fn root(&self, h: f64, of: impl Fn((f64, f64)) -> f64) -> f64 {
-        let (mut low, mut high) = (0.0, h);
-        let side = of(self.step(high)) > 0.0;
-        for _ in 0..50 {
-            let middle = 0.5 * (low + high);
-            if (of(self.step(middle)) > 0.0) == side {
-                high = middle;
+        let (mut low, mut below) = (0.0, of((self.s, self.u)));
+        let (mut high, mut above) = (h, of(self.step(h)));
+        let mut last = 0.0;
+        for _ in 0..100 {
+            if above < 1e-12 || high - low < 1e-15 {
+                break;
+            }
+            let guess = (low * above - high * below) / (above - below);
+            let value = of(self.step(guess));
+            if value >= 0.0 {
+                (high, above) = (guess, value);
+                below *= if last > 0.0 { 0.5 } else { 1.0 };
+                last = 1.0;
             } else {
-                low = middle;
+                (low, below) = (guess, value);
+                above *= if last < 0.0 { 0.5 } else { 1.0 };
+                last = -1.0;
             }
         }
         high

@@ -61,6 +61,18 @@ pub fn words(scored: &Scored) -> Vec<String> {
             two(s.expected_calibration_error)
         ),
     ];
+    said.insert(
+        1,
+        format!(
+            "In {} of them the truth gains less than 8 on the best baseline \
+             (log likelihood), too little to outweigh prior odds and \
+             parameters: no diagnosis can put it first. Of the others it is \
+             in the group in {}, and first in {}.",
+            s.in_group.of - s.in_group_visible.of,
+            told(&s.in_group_visible),
+            told(&s.top1_visible)
+        ),
+    );
     said.extend(outside(s));
     said.push(format!(
         "A diagnosis took {:.1} s in the median, {:.1} s at most.",
@@ -186,14 +198,15 @@ fn effects_table(s: &Score) -> Markup {
         h2 { "Effect by effect" }
         div.wide { table {
             thead { tr {
-                @for heading in ["hidden", "cases", "first", "in group",
+                @for heading in ["hidden", "cases", "visible", "first", "in group",
                     "noticed", "small", "middle", "large", "overlap"] {
                     th scope="col" { (heading) }
                 }
             } }
             tbody { @for e in &s.effects { (effect_row(e)) } }
         } }
-        p.note { "Per cent. Noticed: any verdict but “adequate”, over all \
+        p.note { "Visible: how many recordings show enough of the effect for \
+                  it to come first. Then in per cent. Noticed: any verdict but “adequate”, over all \
                   sizes and over the thirds of their range; where nothing is \
                   hidden that is a false alarm. Overlap: median intersection \
                   over union of the located and the true stretch." }
@@ -209,6 +222,7 @@ fn effect_row(e: &EffectScore) -> Markup {
         tr {
             td.name { (e.name) }
             td { (e.first.of) }
+            td { (e.visible.hits) }
             td { (first) }
             td { (group) }
             td { (percent(&e.detected)) }

@@ -15,6 +15,10 @@ pub(super) const UNKNOWN: &str = "unknown";
 const BY_GROUP: [&str; 2] = ["slope-bias", "averaging-window"];
 /// How much of the noise a good fit may leave.
 const WITHIN: f64 = 1.15;
+/// What the likelihood has to gain before an effect can come first: ln 20 for
+/// the prior odds of a name against `none`, and 5 for its parameters, which a
+/// diagnosis does not know beforehand.
+const VISIBLE: f64 = 8.0;
 /// How many bins calibration is measured in.
 const BINS: usize = 5;
 
@@ -76,6 +80,11 @@ impl Outcome {
     /// Whether anything was found.
     pub fn detected(&self) -> bool {
         self.answer.verdict != ADEQUATE
+    }
+
+    /// Whether the recording shows enough of the effect for it to come first.
+    pub fn visible(&self) -> bool {
+        self.truth.gain >= VISIBLE
     }
 
     /// Whether the fit leaves hardly more than the noise.
@@ -200,7 +209,9 @@ pub struct EffectScore {
     pub in_group: Share,
     /// How often anything was found.
     pub detected: Share,
-    /// The same for the small, the middle and the large third of sizes.
+    /// How many recordings show enough of it for it to come first.
+    pub visible: Share,
+    /// Detection for the small, the middle and the large third of sizes.
     pub by_size: [Share; 3],
     /// The median overlap of located and true stretch, where it has one.
     pub median_iou: Option<f64>,
@@ -233,7 +244,11 @@ pub struct Score {
     pub false_alarms: Share,
     /// Anything was found: effects of the catalogue.
     pub detected: Share,
-    /// The fit leaves at most 1.15 times the noise: the same.
+    /// As `top1`, of the effects that the recording shows enough of.
+    pub top1_visible: Share,
+    /// As `in_group`, of the effects that the recording shows enough of.
+    pub in_group_visible: Share,
+    /// The fit leaves at most 1.15 times the noise: effects of the catalogue.
     pub within_noise: Share,
     /// Expected calibration error of the top probability.
     pub expected_calibration_error: f64,
@@ -256,7 +271,8 @@ impl Score {
     pub fn of(outcomes: &[Outcome]) -> Self {
         let hidden = || outcomes.iter().filter(|o| in_catalogue(&o.truth));
         let none = || outcomes.iter().filter(|o| o.truth.class == Class::None);
-        let singly = hidden().filter(|o| !asks_group(&o.truth));
+        let singly = || hidden().filter(|o| !asks_group(&o.truth));
+        let seen = |o: &&Outcome| o.visible();
         let bins = bins(outcomes);
         let gap = |b: &CalibrationBin| b.weight * (b.stated - b.right).abs();
         let mut seconds: Vec<f64> =
@@ -264,7 +280,13 @@ impl Score {
         let longest = seconds.iter().copied().fold(0.0, f64::max);
         Self {
             cases: outcomes.len(),
-            top1: Share::count(singly.map(Outcome::first)),
+            top1: Share::count(singly().map(Outcome::first)),
+            top1_visible: Share::count(
+                singly().filter(seen).map(Outcome::first),
+            ),
+            in_group_visible: Share::count(
+                hidden().filter(seen).map(Outcome::in_group),
+            ),
             in_group: Share::count(hidden().map(Outcome::in_group)),
             false_alarms: Share::count(none().map(Outcome::detected)),
             detected: Share::count(hidden().map(Outcome::detected)),
@@ -372,6 +394,7 @@ fn effects(outcomes: &[Outcome]) -> Vec<EffectScore> {
             first: Share::count(own().map(Outcome::first)),
             in_group: Share::count(own().map(Outcome::in_group)),
             detected: Share::count(own().map(Outcome::detected)),
+            visible: Share::count(own().map(Outcome::visible)),
             by_size: by_size(&own().collect::<Vec<_>>()),
             median_iou: median(&mut overlaps.collect()),
         }

@@ -1,6 +1,6 @@
 //! Errors of which each takes over a part of the one before.
 
-use super::{Class, Effect, Kind, Scene, Void, normal};
+use super::{Class, Effect, Kind, Scene, Void, log_normal_density, normal};
 use crate::seed::Rng;
 
 /// Sized by phi, the part taken over from value to value.
@@ -40,5 +40,14 @@ impl Effect for Correlated {
                 error
             })
             .collect()
+    }
+
+    fn log_density(&self, sd: f64, errors: &[f64], _: &[f64]) -> f64 {
+        let fresh = sd * (1.0 - self.phi * self.phi).sqrt();
+        let first = errors.first().map(|e| log_normal_density(*e, sd));
+        let step = |pair: &[f64]| {
+            log_normal_density(pair[1] - self.phi * pair[0], fresh)
+        };
+        first.unwrap_or(0.0) + errors.windows(2).map(step).sum::<f64>()
     }
 }

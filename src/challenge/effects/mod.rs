@@ -30,6 +30,7 @@ mod velocity_weakening;
 mod viscous_drag;
 mod wall_drag;
 
+use std::f64::consts::TAU;
 use std::fmt::Debug;
 
 use rand::RngExt;
@@ -247,6 +248,11 @@ pub(super) trait Effect: Debug {
         normal(values.len(), rng).into_iter().map(|z| sd * z).collect()
     }
 
+    /// The logarithm of the density of such errors.
+    fn log_density(&self, sd: f64, errors: &[f64], _values: &[f64]) -> f64 {
+        errors.iter().map(|e| log_normal_density(*e, sd)).sum()
+    }
+
     /// Where or when it acts.
     fn stretch(&self) -> Stretch {
         Stretch::Whole
@@ -256,6 +262,11 @@ pub(super) trait Effect: Debug {
 /// Independent standard normal numbers.
 fn normal(count: usize, rng: &mut Rng) -> Vec<f64> {
     (0..count).map(|_| StandardNormal.sample(rng)).collect()
+}
+
+/// The logarithm of the normal density.
+fn log_normal_density(error: f64, sd: f64) -> f64 {
+    -0.5 * (error / sd).powi(2) - (sd * TAU.sqrt()).ln()
 }
 
 /// Whether a place or a time lies between two.

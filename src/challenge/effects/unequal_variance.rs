@@ -3,7 +3,7 @@
 
 use rand::RngExt;
 
-use super::{Class, Effect, Kind, Scene, Void, normal};
+use super::{Class, Effect, Kind, Scene, Void, log_normal_density, normal};
 use crate::seed::Rng;
 
 /// Sized by the natural logarithm of the largest over the smallest standard
@@ -33,9 +33,9 @@ fn make(scene: &Scene<'_>, rng: &mut Rng) -> Option<Box<dyn Effect>> {
     Some(Box::new(Unequal { growth: scene.size, after }))
 }
 
-impl Effect for Unequal {
-    /// `sd` is the root mean square of the values' own.
-    fn noise(&self, sd: f64, values: &[f64], rng: &mut Rng) -> Vec<f64> {
+impl Unequal {
+    /// The standard deviation of each value, their root mean square `sd`.
+    fn deviations(&self, sd: f64, values: &[f64]) -> Vec<f64> {
         let most = values.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         let count = values.len() as f64;
         let part = |(i, value): (usize, &f64)| match self.after {
@@ -48,7 +48,20 @@ impl Effect for Unequal {
             .map(|place| (self.growth * part(place)).exp())
             .collect();
         let square = own.iter().map(|x| x * x).sum::<f64>() / count;
+        own.iter().map(|own| sd * own / square.sqrt()).collect()
+    }
+}
+
+impl Effect for Unequal {
+    fn noise(&self, sd: f64, values: &[f64], rng: &mut Rng) -> Vec<f64> {
         let normal = normal(values.len(), rng).into_iter();
-        normal.zip(&own).map(|(z, own)| sd * own * z / square.sqrt()).collect()
+        let own = self.deviations(sd, values);
+        normal.zip(&own).map(|(z, own)| own * z).collect()
+    }
+
+    fn log_density(&self, sd: f64, errors: &[f64], values: &[f64]) -> f64 {
+        let own = self.deviations(sd, values);
+        let pairs = errors.iter().zip(&own);
+        pairs.map(|(e, own)| log_normal_density(*e, *own)).sum()
     }
 }

@@ -16,6 +16,7 @@ pub(in crate::challenge) fn truth(effect: &str) -> Truth {
         unit: kind.unit,
         noise_sd: 0.3,
         noise_rms: 0.31,
+        gain: 20.0,
     }
 }
 
