@@ -28,6 +28,9 @@ const ROUNDS: usize = 12;
 /// An avalanche: the least upper quartile of the baseline's speeds, and the
 /// greatest speed with the effect \[m/s\].
 const SPEEDS: (f64, f64) = (8.0, 65.0);
+/// How much of the track below the release a baseline's recording covers, if
+/// the mass does not come to rest.
+const COVERED: f64 = 0.6;
 /// The room above every release, so that one may be stated too low \[m\].
 const HEADROOM: f64 = 45.0;
 
@@ -316,6 +319,17 @@ impl Stage {
         leaves.min(rests)
     }
 
+    /// Whether the recordings are of avalanches and not of their beginnings:
+    /// up to the stop, or over most of the track.
+    fn covered(&self, runs: &[(Run, Clock)]) -> bool {
+        runs.iter().all(|(run, clock)| {
+            let (from, end) = (run.place(0.0), clock.duration());
+            let share =
+                (run.place(end) - from) / (self.ground.length() - from);
+            share >= COVERED || run.rest.is_some_and(|rest| rest <= end)
+        })
+    }
+
     fn scene(&self, sizes: [f64; 2], runs: &[(Run, Clock)]) -> Scene<'_> {
         let mut speeds: Vec<f64> = runs
             .iter()
@@ -371,7 +385,8 @@ impl Scenery {
     fn draw(order: &Order, sizes: [f64; 2], seed: Seed) -> Option<Self> {
         let stage = Stage::draw(order, &mut seed.child(0).rng())?;
         let mut runs = stage.run(&super::effects::Nothing)?;
-        if stage.scene(sizes, &runs).upper < SPEEDS.0 {
+        let slow = stage.scene(sizes, &runs).upper < SPEEDS.0;
+        if slow || !stage.covered(&runs) {
             return None;
         }
         for _ in 0..ROUNDS {
