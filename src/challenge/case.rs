@@ -426,37 +426,43 @@ impl Scenery {
         let mut rng = seed.child(2).rng();
         let (mut recordings, mut shown) = (Vec::new(), Vec::new());
         let mut noise = Noise { sd, ..Noise::default() };
-        for (which, (run, clock)) in self.runs.iter().enumerate() {
-            let times: Vec<f64> = clock.times().collect();
-            let read = |t: &f64| self.effect.read(run, *t, which);
-            let clean: Vec<f64> = times.iter().map(read).collect();
-            let errors = self.effect.noise(sd, &clean, &mut rng);
-            noise.note(&*self.effect, &errors, &clean);
-            let values: Vec<f64> =
-                clean.iter().zip(&errors).map(|(v, e)| v + e).collect();
-            let x = self.releases[which];
-            let from = self.survey.along(x);
-            if distance(&times, &values) > 0.98 * (self.survey.length() - from)
-            {
+        for which in 0..self.runs.len() {
+            let one = self.read(which, &mut noise, &mut rng);
+            let room = self.survey.length() - one.from;
+            if distance(&one.times, &one.values) > 0.98 * room {
                 return None;
             }
             let folder = format!("{name}-{}", ["a", "b"][which % 2]);
             let sheet = files::Sheet {
                 name: &folder,
                 ground: &self.survey,
-                release: x,
+                release: self.releases[which],
                 depth: self.depth,
                 law: &self.law,
-                times: &times,
-                values: &values,
+                times: &one.times,
+                values: &one.values,
             };
             let files = sheet.files();
             recordings.push(Recording { folder, files });
-            shown.push(Shown { from, times, values });
+            shown.push(one);
         }
         let best = baseline(&self.survey, &self.law, &shown);
         let truth = self.truth(order.kind, size, &noise, best);
         Some(Case { name: name.to_owned(), truth, recordings })
+    }
+
+    /// What is read off a motion, with errors.
+    fn read(&self, which: usize, noise: &mut Noise, rng: &mut Rng) -> Shown {
+        let (run, clock) = &self.runs[which];
+        let times: Vec<f64> = clock.times().collect();
+        let read = |t: &f64| self.effect.read(run, *t, which);
+        let clean: Vec<f64> = times.iter().map(read).collect();
+        let errors = self.effect.noise(noise.sd, &clean, rng);
+        noise.note(&*self.effect, &errors, &clean);
+        let pairs = clean.iter().zip(&errors);
+        let values = pairs.map(|(v, e)| v + e).collect();
+        let from = self.survey.along(self.releases[which]);
+        Shown { from, times, values }
     }
 
     /// `best`: the log likelihood of the best baseline.
@@ -534,8 +540,9 @@ fn alike(a: &Scene<'_>, b: &Scene<'_>) -> bool {
         && near(a.duration, b.duration)
 }
 
-/// Whether friction is never next to nothing, no mass is absurdly fast, and every mass is recorded in
-/// at least half of the stretch where the effect acts.
+/// Whether friction is never next to nothing, no mass is absurdly fast, and
+/// every mass is recorded in at least half of the stretch where the effect
+/// acts.
 fn possible(effect: &dyn Effect, runs: &[(Run, Clock)]) -> bool {
     let half = |from: f64, to: f64, end: f64| {
         let needed = if to.is_finite() { 0.5 * (to - from) } else { 0.0 };

@@ -1,5 +1,7 @@
 //! The score in words and as one HTML page.
 
+use std::collections::BTreeSet;
+
 use maud::{Markup, html};
 
 use super::case::{Coordinate, Interval, Mix, Truth};
@@ -31,54 +33,56 @@ fn two(x: f64) -> String {
 /// What came out, in sentences.
 pub fn words(scored: &Scored) -> Vec<String> {
     let s = &scored.score;
-    let mut said = vec![
-        format!(
-            "{} cases, each with an effect that the diagnosis was not told \
-             of, or none: the effect is in the reported group in {}, and \
-             comes first in {}.",
-            s.cases,
-            told(&s.in_group),
-            told(&s.top1)
-        ),
-        format!(
-            "Where nothing is missing, something was reported in {}.",
-            told(&s.false_alarms)
-        ),
-        format!(
-            "Where something is missing, it was noticed in {}; the located \
-             stretch overlaps the true one by {} in the median (intersection \
-             over union).",
-            told(&s.detected),
-            two(s.median_iou)
-        ),
-        format!(
-            "The corrected model leaves at most 1.15 times the noise in {}.",
-            told(&s.within_noise)
-        ),
-        format!(
-            "Stated probabilities miss the share that is right by {} on \
-             average (expected calibration error).",
-            two(s.expected_calibration_error)
-        ),
-    ];
-    said.insert(
-        1,
-        format!(
-            "In {} of them the truth gains less than 8 on the best baseline \
-             (log likelihood), too little to outweigh prior odds and \
-             parameters: no diagnosis can put it first. Of the others it is \
-             in the group in {}, and first in {}.",
-            s.in_group.of - s.in_group_visible.of,
-            told(&s.in_group_visible),
-            told(&s.top1_visible)
-        ),
-    );
+    let mut said = vec![found(s), visible(s)];
+    said.push(format!(
+        "Where nothing is missing, something was reported in {}.",
+        told(&s.false_alarms)
+    ));
+    said.push(format!(
+        "Where something is missing, it was noticed in {}; the located \
+         stretch overlaps the true one by {} in the median (intersection \
+         over union).",
+        told(&s.detected),
+        two(s.median_iou)
+    ));
+    said.push(format!(
+        "The corrected model leaves at most 1.15 times the noise in {}.",
+        told(&s.within_noise)
+    ));
+    said.push(format!(
+        "Stated probabilities miss the share that is right by {} on average \
+         (expected calibration error).",
+        two(s.expected_calibration_error)
+    ));
     said.extend(outside(s));
     said.push(format!(
         "A diagnosis took {:.1} s in the median, {:.1} s at most.",
         s.seconds.0, s.seconds.1
     ));
     said
+}
+
+fn found(s: &Score) -> String {
+    format!(
+        "{} cases, each with an effect that the diagnosis was not told of, \
+         or none: the effect is in the reported group in {}, and comes first \
+         in {}.",
+        s.cases,
+        told(&s.in_group),
+        told(&s.top1)
+    )
+}
+
+fn visible(s: &Score) -> String {
+    format!(
+        "In {} of them the truth gains less than 8 on the best baseline (log \
+         likelihood), too little to outweigh prior odds and parameters: it \
+         can hardly come first. Of the others it is in the group in {}, and \
+         first in {}.",
+        s.in_group.of - s.in_group_visible.of,
+        told(&s.in_group_visible),
+        told(&s.top1_visible)
+    )
 }
 
 fn outside(s: &Score) -> Option<String> {
@@ -126,36 +130,35 @@ fn known(class: Class) -> bool {
     class != Class::Outside
 }
 
-/// Rows: what was hidden; columns: what came first.
-fn confusion(s: &Score) -> Picture {
-    let all = CATALOGUE.iter().chain(&OUTSIDE).map(|k| k.name);
-    let order: Vec<&str> = [NONE].into_iter().chain(all).collect();
-    let rows: Vec<String> = order
-        .iter()
-        .filter(|name| s.confusion.contains_key(**name))
-        .map(|name| (*name).to_owned())
+/// The names of the catalogue, `none` before them and those outside after.
+fn order() -> impl Iterator<Item = &'static str> {
+    let all = CATALOGUE.iter().chain(&OUTSIDE).map(|kind| kind.name);
+    [NONE].into_iter().chain(all)
+}
+
+/// What was hidden or answered, in order; whatever else was answered last.
+fn columns(s: &Score) -> Vec<String> {
+    let answered: BTreeSet<&str> =
+        s.confusion.values().flatten().map(|(n, _)| n.as_str()).collect();
+    let outside = |name: &str| OUTSIDE.iter().any(|k| k.name == name);
+    let hidden = |name: &str| s.confusion.contains_key(name);
+    let mut all: Vec<&str> = order()
+        .chain([UNKNOWN])
+        .filter(|n| answered.contains(n) || (hidden(n) && !outside(n)))
         .collect();
-    let answered =
-        |name: &str| s.confusion.values().any(|row| row.contains_key(name));
-    let mut columns: Vec<String> = order
-        .iter()
-        .chain(&[UNKNOWN])
-        .filter(|name| answered(name) || rows.iter().any(|r| r == *name))
-        .filter(|name| OUTSIDE.iter().all(|k| k.name != **name))
-        .map(|name| (*name).to_owned())
-        .collect();
-    let others: Vec<String> = s
-        .confusion
-        .values()
-        .flat_map(|row| row.keys())
-        .filter(|name| !columns.contains(name))
-        .cloned()
-        .collect();
-    for name in others {
-        if !columns.contains(&name) {
-            columns.push(name);
+    for name in answered {
+        if !all.contains(&name) {
+            all.push(name);
         }
     }
+    all.into_iter().map(str::to_owned).collect()
+}
+
+/// Rows: what was hidden; columns: what came first.
+fn confusion(s: &Score) -> Picture {
+    let hidden = order().filter(|name| s.confusion.contains_key(*name));
+    let rows: Vec<String> = hidden.map(str::to_owned).collect();
+    let columns = columns(s);
     let count = |row: &String, column: &String| {
         s.confusion.get(row).and_then(|r| r.get(column)).copied()
     };
@@ -198,18 +201,20 @@ fn effects_table(s: &Score) -> Markup {
         h2 { "Effect by effect" }
         div.wide { table {
             thead { tr {
-                @for heading in ["hidden", "cases", "visible", "first", "in group",
-                    "noticed", "small", "middle", "large", "overlap"] {
+                @for heading in ["hidden", "cases", "visible", "first",
+                    "in group", "noticed", "small", "middle", "large",
+                    "overlap"] {
                     th scope="col" { (heading) }
                 }
             } }
             tbody { @for e in &s.effects { (effect_row(e)) } }
         } }
         p.note { "Visible: how many recordings show enough of the effect for \
-                  it to come first. Then in per cent. Noticed: any verdict but “adequate”, over all \
-                  sizes and over the thirds of their range; where nothing is \
-                  hidden that is a false alarm. Overlap: median intersection \
-                  over union of the located and the true stretch." }
+                  it to come first. Then in per cent. Noticed: any verdict \
+                  but “adequate”, over all sizes and over the thirds of \
+                  their range; where nothing is hidden that is a false \
+                  alarm. Overlap: median intersection over union of the \
+                  located and the true stretch." }
     }
 }
 

@@ -275,9 +275,8 @@ impl Score {
         let seen = |o: &&Outcome| o.visible();
         let bins = bins(outcomes);
         let gap = |b: &CalibrationBin| b.weight * (b.stated - b.right).abs();
-        let mut seconds: Vec<f64> =
-            outcomes.iter().map(|o| o.answer.seconds).collect();
-        let longest = seconds.iter().copied().fold(0.0, f64::max);
+        let seconds = || outcomes.iter().map(|o| o.answer.seconds);
+        let longest = seconds().fold(0.0, f64::max);
         Self {
             cases: outcomes.len(),
             top1: Share::count(singly().map(Outcome::first)),
@@ -293,14 +292,12 @@ impl Score {
             within_noise: Share::count(hidden().map(Outcome::within_noise)),
             expected_calibration_error: bins.iter().map(gap).sum(),
             bins,
-            median_iou: median(
-                &mut hidden().filter_map(Outcome::overlap).collect(),
-            )
-            .unwrap_or(f64::NAN),
+            median_iou: median(hidden().filter_map(Outcome::overlap))
+                .unwrap_or(f64::NAN),
             confusion: confusion(outcomes),
             effects: effects(outcomes),
             outside: outside(outcomes),
-            seconds: (median(&mut seconds).unwrap_or(f64::NAN), longest),
+            seconds: (median(seconds()).unwrap_or(f64::NAN), longest),
         }
     }
 }
@@ -315,7 +312,8 @@ fn in_catalogue(truth: &Truth) -> bool {
 }
 
 /// The middle of some numbers, the mean of the middle two of an even count.
-fn median(all: &mut Vec<f64>) -> Option<f64> {
+fn median(all: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut all: Vec<f64> = all.collect();
     all.sort_by(f64::total_cmp);
     let n = all.len();
     let upper = *all.get(n / 2)?;
@@ -396,7 +394,7 @@ fn effects(outcomes: &[Outcome]) -> Vec<EffectScore> {
             detected: Share::count(own().map(Outcome::detected)),
             visible: Share::count(own().map(Outcome::visible)),
             by_size: by_size(&own().collect::<Vec<_>>()),
-            median_iou: median(&mut overlaps.collect()),
+            median_iou: median(overlaps),
         }
     };
     truths(outcomes).into_iter().map(score).collect()
@@ -426,7 +424,7 @@ fn outside(outcomes: &[Outcome]) -> OutsideScore {
         detected: Share::count(own().map(Outcome::detected)),
         unknown: Share::count(own().map(unknown)),
         explained: Share::count(own().map(|o| !unknown(o) && o.fair())),
-        median_iou: median(&mut own().filter_map(Outcome::overlap).collect()),
+        median_iou: median(own().filter_map(Outcome::overlap)),
     }
 }
 

@@ -50,50 +50,54 @@ fn misfit(ground: &Ground, law: &Law, shown: &Shown) -> f64 {
     pairs.map(|(t, v)| (run.speed(*t) - v).powi(2)).sum()
 }
 
+/// The eight ways from a place; the first two leave ln xi as it is.
+const WAYS: [(f64, f64); 8] = [
+    (1.0, 0.0),
+    (-1.0, 0.0),
+    (0.0, 1.0),
+    (0.0, -1.0),
+    (0.7, 0.7),
+    (-0.7, -0.7),
+    (0.7, -0.7),
+    (-0.7, 0.7),
+];
+
 /// The least value over mu and ln xi: from the best of a grid, along eight
-/// directions in strides that are halved where none helps. A stride of 0 is
-/// not searched.
+/// ways in strides that are halved where none helps. Where ln xi has a stride
+/// of 0, it is not searched.
 fn search(of: &impl Fn([f64; 2]) -> f64, mut stride: [f64; 2]) -> f64 {
-    let mut best = ([0.3, 7.0], of([0.3, 7.0]));
-    let consider = |p: [f64; 2], best: &mut ([f64; 2], f64)| {
-        let value = of(p);
-        let better = value < best.1;
-        if better {
-            *best = (p, value);
-        }
-        better
-    };
-    let levels: &[f64] =
-        if stride[1] > 0.0 { &[6.0, 7.0, 8.0] } else { &[7.0] };
-    for mu in [0.05, 0.15, 0.25, 0.35, 0.45, 0.55] {
-        for level in levels {
-            consider([mu, *level], &mut best);
-        }
-    }
-    let ways: &[(f64, f64)] = match stride[1] > 0.0 {
-        true => &[
-            (1.0, 0.0),
-            (-1.0, 0.0),
-            (0.0, 1.0),
-            (0.0, -1.0),
-            (0.7, 0.7),
-            (-0.7, -0.7),
-            (0.7, -0.7),
-            (-0.7, 0.7),
-        ],
-        false => &[(1.0, 0.0), (-1.0, 0.0)],
-    };
+    let both = stride[1] > 0.0;
+    let ways = if both { &WAYS[..] } else { &WAYS[..2] };
+    let mut best = grid(of, both);
     while stride[0] > 1e-5 {
-        let from = best.0;
-        let moved = ways.iter().any(|(a, b)| {
+        let (from, least) = best;
+        let better = ways.iter().find_map(|(a, b)| {
             let p = [from[0] + a * stride[0], from[1] + b * stride[1]];
-            consider(p, &mut best)
+            let value = of(p);
+            (value < least).then_some((p, value))
         });
-        if !moved {
-            stride = stride.map(|x| 0.5 * x);
+        match better {
+            Some(found) => best = found,
+            None => stride = stride.map(|x| 0.5 * x),
         }
     }
     best.1
+}
+
+/// The best of a coarse grid, with its value.
+fn grid(of: &impl Fn([f64; 2]) -> f64, both: bool) -> ([f64; 2], f64) {
+    let levels: &[f64] = if both { &[6.0, 7.0, 8.0] } else { &[7.0] };
+    let mut best = ([0.3, 7.0], f64::INFINITY);
+    for mu in [0.05, 0.15, 0.25, 0.35, 0.45, 0.55] {
+        for level in levels {
+            let p = [mu, *level];
+            let value = of(p);
+            if value < best.1 {
+                best = (p, value);
+            }
+        }
+    }
+    best
 }
 
 #[cfg(test)]
