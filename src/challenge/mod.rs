@@ -17,6 +17,7 @@ mod json;
 mod motion;
 mod page;
 mod power;
+mod scenery;
 mod score;
 mod trial;
 mod visible;

@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
-use super::case::{Case, Mix, Order, branch, draw};
+use super::case::{Case, Mix, branch};
 use super::effects::{CATALOGUE, Kind, OUTSIDE};
+use super::scenery::{Order, draw};
 use super::score::{Outcome, Share};
 use crate::error::{Error, Result};
 

@@ -1,7 +1,6 @@
 //! A clock that does not start with the mass.
 
 use super::{Class, Effect, Kind, Scene, Void};
-use crate::challenge::motion::Run;
 use crate::seed::Rng;
 
 /// Sized by how much later than its stamp a value was taken.
@@ -19,15 +18,15 @@ pub(super) const KIND: Kind = Kind {
 #[derive(Debug)]
 struct Clock {
     /// How much later each recording's values were taken \[s\].
-    late: [f64; 2],
+    by: [f64; 2],
 }
 
 fn make(scene: &Scene<'_>, _: &mut Rng) -> Option<Box<dyn Effect>> {
-    Some(Box::new(Clock { late: [scene.size, scene.other] }))
+    Some(Box::new(Clock { by: [scene.size, scene.other] }))
 }
 
 impl Effect for Clock {
-    fn read(&self, run: &Run, t: f64, which: usize) -> f64 {
-        run.speed(t + self.late[which % 2])
+    fn late(&self, which: usize) -> f64 {
+        self.by[which % 2]
     }
 }

@@ -238,9 +238,14 @@ pub(super) trait Effect: Debug {
         None
     }
 
+    /// How much later than its stamp a value is taken \[s\].
+    fn late(&self, _which: usize) -> f64 {
+        0.0
+    }
+
     /// The value \[m/s\] for a time \[s\], before noise.
-    fn read(&self, run: &Run, t: f64, _which: usize) -> f64 {
-        run.speed(t)
+    fn read(&self, run: &Run, t: f64, which: usize) -> f64 {
+        run.speed(t + self.late(which))
     }
 
     /// The errors \[m/s\] of values, `sd` the instrument's.
