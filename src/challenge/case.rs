@@ -41,8 +41,6 @@ pub struct Truth {
     pub interval: Option<Interval>,
     /// Its size, in `unit`.
     pub size: f64,
-    /// The size as a share of the greatest that is drawn, 0 to 1.
-    pub fraction: f64,
     /// The size's unit; `1` for a number without one.
     pub unit: &'static str,
     /// The instrument's standard deviation \[m/s\], as drawn.

@@ -340,13 +340,11 @@ impl Scenery {
         noise: &Noise,
         best: f64,
     ) -> Truth {
-        let greatest = kind.range.1.max(f64::MIN_POSITIVE);
         Truth {
             effect: kind.name,
             class: kind.class,
             interval: self.interval(),
             size,
-            fraction: size.abs() / greatest,
             unit: kind.unit,
             noise_sd: noise.sd,
             noise_rms: (noise.squares / noise.count as f64).sqrt(),

@@ -12,7 +12,6 @@ pub(in crate::challenge) fn truth(effect: &str) -> Truth {
         class: kind.class,
         interval: (effect == "friction-patch").then(|| place(100.0, 150.0)),
         size: kind.range.1,
-        fraction: 1.0,
         unit: kind.unit,
         noise_sd: 0.3,
         noise_rms: 0.31,
