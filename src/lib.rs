@@ -67,13 +67,14 @@
 //! | [`error`], [`seed`], [`scalar`], [`block`] | failure, chance, numbers with derivatives, named parts |
 //! | [`prior`], [`draws`], [`context`], [`physics`] | distributions; samples and their diagnostics; buffers; terrain, laws, motion |
 //! | [`noise`] | how recordings scatter |
+//! | [`change`] | what a change from outside makes of a model; mechanisms |
 //! | [`declared`] | blocks as a model declared them |
 //! | [`observe`] | events, series, and from the motion to what was measured |
 //! | [`mod@model`] | one run of a model, asked in different ways |
 //! | [`infer`], [`predict`] | backends; predictions |
 //! | [`elpd`], [`io`], [`report`] | prediction of what was left out; event files in; tables, pictures and pages out |
-//! | [`calibrate`], [`sbc`] | a whole calibration; whether inference can be trusted |
-//! | [`mod@reproduce`] | the paper's study, computed again |
+//! | [`calibrate`], [`discrepancy`], [`sbc`] | a whole calibration; what a model lacks; whether inference can be trusted |
+//! | [`mod@reproduce`], [`challenge`] | the paper's study, computed again; hidden effects, made without the engine, and the score |
 //! | [`cli`] | the command: nothing below it prints |
 //!
 //! The reasons for all this are in `DESIGN.md`, the invariants in
@@ -82,6 +83,7 @@
 
 pub mod block;
 pub mod calibrate;
+pub mod challenge;
 pub mod change;
 pub mod cli;
 pub mod context;

@@ -5,6 +5,7 @@
 
 mod bench;
 mod calibrate;
+mod challenge;
 mod compare;
 mod diagnose;
 mod new;
@@ -45,6 +46,8 @@ enum Command {
     New(new::Arguments),
     /// Run every backend on an event, side by side
     Bench(bench::Arguments),
+    /// Diagnose events that hide one effect each, and score the answers
+    Challenge(challenge::Arguments),
     /// Compute the study of Heredia et al. (2020) again
     Reproduce(reproduce::Arguments),
 }
@@ -151,6 +154,7 @@ pub fn main_with(laws: &Laws) -> ExitCode {
         Command::Calibrate(arguments) => arguments.run(laws),
         Command::Compare(arguments) => arguments.run(laws),
         Command::Diagnose(arguments) => arguments.run(laws),
+        Command::Challenge(arguments) => arguments.run(),
         Command::Simulate(arguments) => arguments.run(laws),
         Command::New(arguments) => arguments.run(),
         Command::Bench(arguments) => arguments.run(laws),

@@ -172,7 +172,10 @@ fn fit_if_worth<P: Program>(
     let posterior = Posterior::new(&with)?;
     let outlook = backend.outlook(&posterior, seed.child(0))?;
     if std::env::var("DBG").is_ok() {
-        eprintln!("pair {:?} {outlook} {hurdle}", mechanisms.iter().map(|m| m.name()).collect::<Vec<_>>());
+        eprintln!(
+            "pair {:?} {outlook} {hurdle}",
+            mechanisms.iter().map(|m| m.name()).collect::<Vec<_>>()
+        );
     }
     if outlook < hurdle - SHORT {
         return Ok(None);

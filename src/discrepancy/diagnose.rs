@@ -76,6 +76,12 @@ struct Chosen {
     fit: Fit,
 }
 
+/// The best pair with the best single mechanism in it, and the best without.
+struct Pairs {
+    nested: Option<Chosen>,
+    other: Option<Chosen>,
+}
+
 /// Finds where a model and a recording differ and what was left out.
 ///
 /// # Errors
@@ -160,18 +166,36 @@ fn choose<P: Program>(
     if none.is_some_and(|m| m.probability > SURE) {
         return Ok(Some(single));
     }
-    let Some(two) = best_pair(program, all, found, &best, &single.fit, seed)?
-    else {
-        return Ok(Some(single));
+    let pairs = best_pair(program, all, found, &best, &single.fit, seed)?;
+    let two = match pairs.nested {
+        Some(two) if rises(&two.fit, &single.fit) => two,
+        _ => return Ok(Some(rivalled(single, pairs.other, all))),
     };
-    if !rises(&two.fit, &single.fit) {
-        return Ok(Some(single));
-    }
+    let two = rivalled(two, pairs.other, all);
     let three = best_third(program, all, found, &best, &two, seed)?;
     match three {
         Some(three) if rises(&three.fit, &two.fit) => Ok(Some(three)),
         _ => Ok(Some(two)),
     }
+}
+
+/// The chosen, warned of where a pair of other mechanisms reaches further.
+fn rivalled(
+    mut chosen: Chosen,
+    rival: Option<Chosen>,
+    all: &[Box<dyn Mechanism>],
+) -> Chosen {
+    if let Some(rival) = rival.filter(|r| rises(&r.fit, &chosen.fit)) {
+        let names: Vec<_> =
+            rival.which.iter().map(|&i| all[i].name()).collect();
+        let gain = rival.fit.log_evidence - chosen.fit.log_evidence;
+        chosen.fit.warnings.push(format!(
+            "{} together reach a higher evidence still, by {:.1} in log10",
+            names.join(" and "),
+            gain / LN_10
+        ));
+    }
+    chosen
 }
 
 fn rises(more: &Fit, less: &Fit) -> bool {
@@ -208,7 +232,7 @@ fn best_pair<P: Program>(
     best: &[usize],
     single: &Fit,
     seed: Seed,
-) -> Result<Option<Chosen>> {
+) -> Result<Pairs> {
     let pairs: Vec<(usize, usize)> = (0..best.len())
         .flat_map(|i| (i + 1..best.len()).map(move |j| (best[i], best[j])))
         .collect();
@@ -223,7 +247,12 @@ fn best_pair<P: Program>(
             Ok(fit.map(|fit| Chosen { which: vec![a, b], fit }))
         })
         .collect::<Result<Vec<_>>>()?;
-    Ok(most_evidence(fits))
+    // A second term is added to the best one: a pair of two others that
+    // reaches as far says less plainly what is missing.
+    let (nested, others): (Vec<_>, Vec<_>) = fits
+        .into_iter()
+        .partition(|c| c.as_ref().is_some_and(|c| c.which.contains(&best[0])));
+    Ok(Pairs { nested: most_evidence(nested), other: most_evidence(others) })
 }
 
 fn best_third<P: Program>(

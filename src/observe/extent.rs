@@ -18,6 +18,8 @@ pub struct Extent {
     pub step: f64,
     /// How far the release lies from the track's first point \[m\].
     pub behind: f64,
+    /// The speed at t = 0 \[m/s\].
+    pub start_speed: f64,
     /// Whether the ground carries the mass at all.
     pub carried: bool,
     /// Whether the ground bends along the run.
@@ -66,6 +68,7 @@ impl Event {
             speed: quartile.unwrap_or(1.0).max(0.1),
             step,
             behind: self.start(),
+            start_speed: self.release_speed(),
             carried: pieces.iter().any(|piece| piece.load > 1e-6),
             bends: false,
             averages,

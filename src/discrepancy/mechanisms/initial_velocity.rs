@@ -1,6 +1,6 @@
 //! A mass that is already moving at t = 0.
 
-use super::unknown;
+use super::{SPEED, unknown};
 use crate::change::{Candidate, Change, Family, Missing, Unknown};
 use crate::observe::Extent;
 use crate::prior::AnyPrior;
@@ -23,11 +23,16 @@ impl Candidate for InitialVelocity {
     }
 
     fn says(&self) -> &'static str {
-        "At t = 0 the mass was already faster than the event says."
+        "At t = 0 the mass had another speed than the event says."
     }
 
     fn unknowns(&self) -> Vec<Unknown> {
-        vec![unknown("speed", "m/s", AnyPrior::HalfNormal(5.0))]
+        // A mass said to be moving may have been slower, too.
+        let prior = match self.extent.start_speed {
+            0.0 => AnyPrior::HalfNormal(SPEED),
+            _ => AnyPrior::Normal(0.0, SPEED),
+        };
+        vec![unknown("speed", "m/s", prior)]
     }
 
     fn formula(&self) -> String {

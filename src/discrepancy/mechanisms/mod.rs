@@ -53,6 +53,8 @@ use crate::scalar::{Kind, Real};
 const FORCE: f64 = 1.5;
 /// The prior sd of a change of mu.
 const FRICTION: f64 = 0.15;
+/// The prior sd of a start speed \[m/s\].
+const SPEED: f64 = 5.0;
 /// The prior sd of a release's shift \[m\].
 const DISTANCE: f64 = 10.0;
 /// The prior sd of what a sensor has drifted by the end \[recorded unit\].

@@ -10,15 +10,19 @@ mod boxes;
 mod canvas;
 mod curves;
 mod densities;
+mod matrix;
 mod pairs;
 mod palette;
 mod recording;
+mod reliability;
 mod residuals;
 mod traces;
 mod track;
 
 pub use boxes::{Boxes, box_plots};
 pub use curves::{Curves, curves};
+pub use matrix::{Matrix, matrix};
+pub use reliability::{Bin, reliability};
 
 use super::{CalibrationReport, text};
 

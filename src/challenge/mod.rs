@@ -1,0 +1,33 @@
+//! The proof: events that hide one effect each, diagnosed without the answer,
+//! and scored.
+//!
+//! What makes the events shares no code with what diagnoses them: no track,
+//! no integrator, no friction law, no noise of the crate is used here, only
+//! random numbers and the words of the file format.
+//!
+//! - [`cases`] draws events; [`power_cases`] one effect at given sizes.
+//! - [`run`] puts them to a diagnosis and scores its [`Answer`]s.
+//! - [`words`], [`page`], [`challenge_json`] and [`PowerTable`] tell it.
+
+mod case;
+mod effects;
+mod files;
+mod ground;
+mod json;
+mod motion;
+mod page;
+mod power;
+mod scenery;
+mod score;
+mod trial;
+mod visible;
+
+pub use case::{Case, Coordinate, Interval, Mix, Recording, Truth, cases};
+pub use effects::Class;
+pub use json::challenge_json;
+pub use page::{page, power_page, words};
+pub use power::{PowerTable, mechanisms, power_cases};
+pub use score::{
+    Answer, CalibrationBin, EffectScore, Outcome, OutsideScore, Score, Share,
+};
+pub use trial::{Diagnose, Scored, run};

@@ -1,0 +1,65 @@
+//! Cases put to a diagnosis, one after the other or side by side.
+
+use rayon::prelude::*;
+
+use super::case::Case;
+use super::score::{Answer, Outcome, Score};
+use crate::error::Result;
+use crate::infer::Progress;
+
+/// What a diagnosis is for the challenge: an answer to a case.
+///
+/// It is handed the truth with the case, as a matter of convenience, and is
+/// to look at the recordings only.
+pub type Diagnose<'a> = dyn Fn(&Case) -> Result<Answer> + Sync + 'a;
+
+/// All cases with their answers, and the score.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scored {
+    /// Case by case, in their order.
+    pub outcomes: Vec<Outcome>,
+    /// The score.
+    pub score: Score,
+}
+
+/// Puts cases to a diagnosis: side by side if `parallel`, otherwise one after
+/// the other, for a diagnosis that uses all processors itself.
+///
+/// ```
+/// use couloir::challenge::{Answer, Mix, cases, run};
+/// use couloir::infer::Quiet;
+/// let diagnose = |_: &_| Ok(Answer {
+///     verdict: "adequate".into(),
+///     probabilities: vec![("none".into(), 1.0)],
+///     ..Answer::default()
+/// });
+/// let some = cases(2, 1, Mix::One)?;
+/// let scored = run(&some, &diagnose, false, &Quiet)?;
+/// assert_eq!(scored.score.false_alarms.hits, 0);
+/// # Ok::<(), couloir::Error>(())
+/// ```
+///
+/// # Errors
+/// That of the first case, in their order, whose diagnosis fails.
+pub fn run(
+    cases: &[Case],
+    diagnose: &Diagnose<'_>,
+    parallel: bool,
+    progress: &dyn Progress,
+) -> Result<Scored> {
+    progress.begin("diagnosing", Some(cases.len() as u64));
+    let answer = |case: &Case| {
+        let answer = diagnose(case).map_err(|e| e.within(&case.name))?;
+        progress.advance(1);
+        let (case, truth) = (case.name.clone(), case.truth.clone());
+        Ok(Outcome { case, truth, answer })
+    };
+    let outcomes: Vec<Result<Outcome>> = if parallel {
+        cases.par_iter().map(answer).collect()
+    } else {
+        cases.iter().map(answer).collect()
+    };
+    let outcomes = outcomes.into_iter().collect::<Result<Vec<_>>>()?;
+    let score = Score::of(&outcomes);
+    Ok(Scored { outcomes, score })
+}

@@ -1,0 +1,160 @@
+//! `couloir challenge`: hidden effects, diagnosed without the answer.
+
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::calibrate::{pretty, wrapped};
+use super::progress::Told;
+use super::study::assemble;
+use super::{at_least_one, width};
+use crate::challenge::{
+    Answer, Case, Coordinate, Interval, Mix, PowerTable, cases,
+    challenge_json, page, power_cases, power_page, run, words,
+};
+use crate::discrepancy::{Diagnosis, Options, diagnose};
+use crate::error::{Error, Result};
+use crate::infer::Quiet;
+use crate::io::{parse_event, write_all};
+use crate::model::Assembled;
+use crate::physics::forces::Axis;
+use crate::physics::friction::Laws;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// How many cases with an effect of the catalogue; half as many hide
+    /// nothing, a fifth something outside the catalogue
+    #[arg(long, default_value_t = 200, value_parser = at_least_one)]
+    cases: usize,
+    /// Seed of every random draw
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Study instead what size of this mechanism is seen in what noise
+    #[arg(long, value_name = "MECHANISM")]
+    power: Option<String>,
+    /// Folder to write the page and challenge.json to
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print one JSON document instead of the words
+    #[arg(long)]
+    json: bool,
+}
+
+/// The sizes of the power study, as shares of the largest, and its noises
+/// \[m/s\].
+const SIZES: [f64; 5] = [0.1, 0.2, 0.4, 0.7, 1.0];
+const NOISES: [f64; 3] = [0.1, 0.3, 0.9];
+
+impl Arguments {
+    pub(super) fn run(&self) -> Result<String> {
+        match &self.power {
+            Some(mechanism) => self.study(mechanism),
+            None => self.score(),
+        }
+    }
+
+    fn score(&self) -> Result<String> {
+        let all = cases(self.cases, self.seed, Mix::One)?;
+        let told = Told::new();
+        let seed = self.seed;
+        let scored = run(&all, &|case| answer(case, seed), true, &told)?;
+        drop(told);
+        let json = pretty(&challenge_json(&scored));
+        if let Some(folder) = &self.out {
+            let files = [
+                ("challenge.json", json.clone()),
+                ("challenge.html", page(&scored, Mix::One, self.seed)),
+            ];
+            write_all(folder, &files)?;
+        }
+        if self.json {
+            return Ok(json);
+        }
+        let width = width();
+        let mut text: String =
+            words(&scored).iter().map(|s| wrapped(s, width)).collect();
+        if let Some(folder) = &self.out {
+            text.push_str(&format!(
+                "\nWritten to {}: challenge.html, challenge.json\n",
+                folder.display()
+            ));
+        }
+        Ok(text)
+    }
+
+    fn study(&self, mechanism: &str) -> Result<String> {
+        let count = self.cases.div_ceil(SIZES.len() * NOISES.len());
+        let all = power_cases(mechanism, &SIZES, &NOISES, count, self.seed)?;
+        let told = Told::new();
+        let seed = self.seed;
+        let scored = run(&all, &|case| answer(case, seed), true, &told)?;
+        drop(told);
+        let tables: Vec<PowerTable> = PowerTable::of(&scored.outcomes);
+        if let Some(folder) = &self.out {
+            let page = power_page(&tables, self.seed);
+            write_all(folder, &[("power.html", page)])?;
+        }
+        Ok(tables.iter().map(PowerTable::markdown).collect())
+    }
+}
+
+/// What the diagnosis says of a case, from its recordings alone.
+fn answer(case: &Case, seed: u64) -> Result<Answer> {
+    let recording = case
+        .recordings
+        .first()
+        .ok_or_else(|| Error::input("a case without a recording"))?;
+    let model = model_of(&recording.files)?;
+    let options = Options::of(&model, seed);
+    let found = diagnose(&model, model.event(), &options, &Quiet)?;
+    Ok(answer_of(&found))
+}
+
+/// The model that an event folder's files ask for.
+fn model_of(files: &[(&'static str, String)]) -> Result<Assembled> {
+    let text = |name: &str| {
+        files
+            .iter()
+            .find(|(file, _)| *file == name)
+            .map(|(_, text)| text.clone())
+            .ok_or_else(|| Error::input(format!("{name} is missing")))
+    };
+    let open = |name: &str| {
+        text(name).map(|text| (Cursor::new(text), PathBuf::from(name)))
+    };
+    let laws = Laws::default();
+    let event = text("event.toml")?;
+    let file = parse_event(&event, Path::new("event.toml"), open, &laws)?;
+    assemble(file, &laws, None, None)
+}
+
+fn answer_of(found: &Diagnosis) -> Answer {
+    Answer {
+        verdict: found.verdict.name().to_owned(),
+        probabilities: found
+            .mechanisms
+            .iter()
+            .map(|m| (m.name.clone(), m.probability))
+            .collect(),
+        group: found.group.clone(),
+        mismatch: found
+            .mismatch
+            .iter()
+            .map(|m| Interval {
+                coordinate: match m.axis {
+                    Axis::Time => Coordinate::Time,
+                    _ => Coordinate::Arclength,
+                },
+                from: m.from,
+                to: m.to,
+                time_from: m.time_from,
+                time_to: m.time_to,
+            })
+            .collect(),
+        rmse_before: found.improvement.rmse.before,
+        rmse_after: found.improvement.rmse.after,
+        heldout_rmse_after: found.improvement.heldout_rmse.after,
+        seconds: found.seconds,
+    }
+}
