@@ -29,6 +29,9 @@ pub struct Change<K: Kind> {
     pub clock: Real<K>,
     /// Over how many last seconds a value is really the mean \[s\].
     pub window: Real<K>,
+    /// Whether a window that reaches before the release begins there, instead
+    /// of counting the mass at rest before it.
+    pub window_begins: bool,
     /// The sensor's scale, minus 1.
     pub scale: Real<K>,
     /// What the sensor adds per second \[recorded unit/s\].
@@ -70,6 +73,7 @@ impl<K: Kind> Default for Change<K> {
             start_place: zero,
             clock: zero,
             window: zero,
+            window_begins: true,
             scale: zero,
             drift: zero,
             noise: Alteration::default(),
@@ -110,6 +114,7 @@ impl<K: Kind> Change<K> {
         both.known = both.known.or(other.known);
         both.clock += other.clock;
         both.window += other.window;
+        both.window_begins &= other.window_begins;
         both.scale += other.scale;
         both.drift += other.drift;
         both.noise.phi += other.noise.phi;

@@ -171,20 +171,10 @@ fn fit_if_worth<P: Program>(
     let with = With::new(program, mechanisms);
     let posterior = Posterior::new(&with)?;
     let outlook = backend.outlook(&posterior, seed.child(0))?;
-    if std::env::var("DBG").is_ok() {
-        eprintln!(
-            "pair {:?} {outlook} {hurdle}",
-            mechanisms.iter().map(|m| m.name()).collect::<Vec<_>>()
-        );
-    }
     if outlook < hurdle - SHORT {
         return Ok(None);
     }
-    let found = fit(program, mechanisms, backend, seed.child(1))?;
-    if std::env::var("DBG").is_ok() {
-        eprintln!("   ln Z {}", found.log_evidence);
-    }
-    Ok(Some(found))
+    fit(program, mechanisms, backend, seed.child(1)).map(Some)
 }
 
 /// Fits one mechanism more, from the best of those that are known.

@@ -14,12 +14,12 @@ use super::diagnosis::{
 };
 use super::fit::Fit;
 use super::judge::{Odds, group, judge, label, told, verdict};
-use super::locate::{FreeForce, locate};
+use super::locate::{FreeForce, free_fit, locate};
 use super::mechanisms::catalogue;
 use super::place::mismatch;
 use crate::change::Mechanism;
 use crate::draws::{self, summarise};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::infer::Progress;
 use crate::model::{Assembled, Program};
 use crate::observe::Event;
@@ -115,20 +115,38 @@ pub fn diagnose<P: Program>(
         mechanisms: Vec::new(),
         fit: &found.none,
         first: seed.child(30),
+        rough: false,
     };
-    let after = chosen.as_ref().map(|chosen| Shown {
-        mechanisms: chosen.which.iter().map(|&i| all[i].as_ref()).collect(),
-        fit: &chosen.fit,
-        first: seed.child(40),
-    });
+    let free = match verdict {
+        Verdict::Unexplained => {
+            Some(free_form(program, event, &forces, &found, seed)?)
+        }
+        _ => None,
+    };
+    let after = match (&chosen, &free) {
+        (Some(chosen), _) => Some(Shown {
+            mechanisms: chosen
+                .which
+                .iter()
+                .map(|&i| all[i].as_ref())
+                .collect(),
+            fit: &chosen.fit,
+            first: seed.child(40),
+            rough: false,
+        }),
+        (None, Some((mechanism, fit))) => Some(Shown {
+            mechanisms: vec![mechanism.as_ref()],
+            fit,
+            first: seed.child(40),
+            rough: true,
+        }),
+        (None, None) => None,
+    };
     let mut diagnosis = told_of(program, event, before, after)?;
     diagnosis.baseline.friction.clone_from(&options.friction);
     diagnosis.baseline.noise.clone_from(&options.noise);
     diagnosis.verdict = verdict;
     diagnosis.group = group(&judged);
-    if verdict == Verdict::Unexplained {
-        diagnosis.selected = vec!["unknown".into()];
-    }
     let reaches = chosen.as_ref().map(|c| reaches(c, &all));
     diagnosis.mismatch = mismatch(
         verdict,
@@ -143,6 +161,22 @@ pub fn diagnose<P: Program>(
     diagnosis.forces = forces;
     diagnosis.seconds = begun.elapsed().as_secs_f64();
     Ok(diagnosis)
+}
+
+/// The free-form force along the axis with the most evidence, fitted.
+fn free_form<P: Program>(
+    program: &P,
+    event: &Event,
+    forces: &[FreeForce],
+    found: &Attribution,
+    seed: Seed,
+) -> Result<(Box<dyn Mechanism>, Fit)> {
+    let force = forces
+        .iter()
+        .max_by(|a, b| a.log_bayes_factor.total_cmp(&b.log_bayes_factor))
+        .ok_or_else(|| Error::inference("no free-form force was inferred"))?;
+    let extent = event.extent();
+    free_fit(program, &extent, force, &found.none, seed.child(20))
 }
 
 /// The model to go on with: the best mechanism where there is one, or a pair
@@ -360,7 +394,10 @@ fn told_of<P: Program>(
             coverage90: pairs(|f| f.coverage90),
             ljung_box_p: pairs(|f| f.ljung_box_p),
         },
-        parameters: told(&summarise(&fits.1.draws), None),
+        parameters: told(&summarise(&fits.1.draws), None)
+            .into_iter()
+            .filter(|p| !p.name.starts_with("unknown."))
+            .collect(),
         pictured: vec![pictured(event, old, new)],
         warnings,
         ..Diagnosis::default()

@@ -52,17 +52,7 @@ pub fn fit<P: Program>(
 ) -> Result<Fit> {
     let with = With::new(program, mechanisms);
     let posterior = Posterior::new(&with)?;
-    let t0 = std::time::Instant::now();
     let found = backend.explore(&posterior, seed, &Quiet)?;
-    if std::env::var("DBG").is_ok() {
-        eprintln!(
-            "{:?} {:?} {:?} {}",
-            mechanisms.iter().map(|m| m.name()).collect::<Vec<_>>(),
-            t0.elapsed(),
-            posterior.cost(),
-            found.evidence.as_ref().map_or("", |e| &e.method)
-        );
-    }
     let (Some(draws), Some(evidence)) = (found.draws, found.evidence) else {
         return Err(Error::inference("a fit without draws or evidence"));
     };

@@ -13,8 +13,10 @@ use nalgebra::{DMatrix, DVector};
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
+use super::fit::Fit;
 use crate::block::List;
-use crate::change::{Candidate, Change, Family, Missing, Unknown};
+use crate::change::{Candidate, Change, Family, Mechanism, Missing, Unknown};
+use crate::draws::Draws;
 use crate::error::{Error, Result};
 use crate::infer::{Peak, climb};
 use crate::model::{Posterior, Program, With};
@@ -23,7 +25,7 @@ use crate::physics::Rate;
 use crate::physics::forces::{Axis, Range, STEPS, Shape, Term};
 use crate::prior::{AnyPrior, LogNormal, Prior};
 use crate::scalar::{Kind, Plain, Real};
-use crate::seed::Seed;
+use crate::seed::{Rng, Seed};
 
 /// How many cells the force has.
 pub const CELLS: usize = 40;
@@ -128,6 +130,64 @@ impl Missing for FreeForm {
     }
 }
 
+/// The free-form force as a mechanism of its own, with the fit of its
+/// likeliest process: draws of the normal approximation.
+///
+/// # Errors
+/// As [`locate`].
+pub(super) fn free_fit<P: Program>(
+    program: &P,
+    extent: &Extent,
+    force: &FreeForce,
+    none: &Fit,
+    seed: Seed,
+) -> Result<(Box<dyn Mechanism>, Fit)> {
+    let (length, size) = force.process;
+    let free = FreeForm::new(extent, force.axis, length, size)?;
+    let (peak, _) = node(program, &free, none.own())?
+        .ok_or_else(|| Error::inference("no free-form force has a mode"))?;
+    let with = With::new(program, &[&free]);
+    let posterior = Posterior::new(&with)?;
+    let mut draws = Draws::new(
+        posterior.parameters().iter().map(|p| p.name.clone()).collect(),
+        posterior.parameters().iter().map(|p| p.unit.clone()).collect(),
+    )?;
+    let mut rng = seed.rng();
+    let rows = normal_draws(&peak, 400, &mut rng)
+        .iter()
+        .map(|line| posterior.natural(line.as_slice()))
+        .collect::<Result<Vec<_>>>()?;
+    draws.push_chain(rows.concat(), None)?;
+    let fit = Fit {
+        log_evidence: none.log_evidence + force.log_bayes_factor,
+        se: none.se,
+        best: peak.line.as_slice().to_vec(),
+        draws,
+        added: CELLS,
+        warnings: Vec::new(),
+    };
+    Ok((Box::new(free), fit))
+}
+
+/// Draws of a peak's normal approximation, on the real line.
+fn normal_draws(
+    peak: &Peak,
+    count: usize,
+    rng: &mut Rng,
+) -> Vec<DVector<f64>> {
+    let Some(factor) = peak.precision.clone().cholesky() else {
+        return Vec::new();
+    };
+    let spread = factor.l().transpose();
+    let n = peak.line.len();
+    (0..count)
+        .filter_map(|_| {
+            let z = DVector::from_fn(n, |_, _| StandardNormal.sample(rng));
+            Some(&peak.line + spread.solve_upper_triangular(&z)?)
+        })
+        .collect()
+}
+
 /// What is known of the free-form force along one axis.
 #[derive(Debug, Clone)]
 pub struct FreeForce {
@@ -145,6 +205,8 @@ pub struct FreeForce {
     pub draws: Vec<Vec<f64>>,
     /// ln of its evidence over that of the model without it.
     pub log_bayes_factor: f64,
+    /// The process's likeliest length \[m\] and size \[m/s2\].
+    pub process: (f64, f64),
 }
 
 /// One length and size of the process, with its posterior.
@@ -152,6 +214,7 @@ struct Node {
     log_weight: f64,
     peak: Peak,
     factor: DMatrix<f64>,
+    process: (f64, f64),
 }
 
 /// Infers a free-form force along an axis, jointly with the model's own
@@ -183,7 +246,12 @@ pub fn locate<P: Program>(
         .into_par_iter()
         .map(|(length, size)| {
             let free = FreeForm::new(extent, axis, length, size)?;
-            node(program, free, own)
+            Ok(node(program, &free, own)?.map(|(peak, log_weight)| Node {
+                log_weight,
+                peak,
+                factor: free.factor,
+                process: (length, size),
+            }))
         })
         .collect::<Result<Vec<_>>>()?
         .into_iter()
@@ -199,15 +267,14 @@ fn middle(i: usize, of: usize) -> f64 {
 
 fn node<P: Program>(
     program: &P,
-    free: FreeForm,
+    free: &FreeForm,
     own: &[f64],
-) -> Result<Option<Node>> {
-    let with = With::new(program, &[&free]);
+) -> Result<Option<(Peak, f64)>> {
+    let with = With::new(program, &[free]);
     let posterior = Posterior::new(&with)?;
     let start = [vec![0.0; CELLS], own.to_vec()].concat();
     let Some(peak) = climb(&posterior, &start)? else { return Ok(None) };
-    let Some(log_weight) = peak.log_evidence() else { return Ok(None) };
-    Ok(Some(Node { log_weight, peak, factor: free.factor }))
+    Ok(peak.log_evidence().map(|log_weight| (peak, log_weight)))
 }
 
 /// Draws of the force from all nodes, and what they say.
@@ -226,18 +293,8 @@ fn force(
     for node in &nodes {
         let share = (node.log_weight - top).exp() / total;
         let count = (share * DRAWS as f64).round() as usize;
-        let Some(factor) = node.peak.precision.clone().cholesky() else {
-            continue;
-        };
-        let spread = factor.l().transpose();
-        for _ in 0..count {
-            let z = DVector::from_fn(node.peak.line.len(), |_, _| {
-                StandardNormal.sample(&mut rng)
-            });
-            let Some(off) = spread.solve_upper_triangular(&z) else {
-                continue;
-            };
-            let waves = (&node.peak.line + off).rows(0, CELLS).into_owned();
+        for line in normal_draws(&node.peak, count, &mut rng) {
+            let waves = line.rows(0, CELLS).into_owned();
             draws.push((&node.factor * waves).as_slice().to_vec());
         }
     }
@@ -251,7 +308,20 @@ fn force(
     let (mean, sd) = moments(&draws);
     let width = simultaneous(&draws, &mean, &sd);
     let log_bayes_factor = top + (total / all).ln() - baseline;
-    Ok(FreeForce { axis, at, mean, sd, width, draws, log_bayes_factor })
+    let best = nodes
+        .iter()
+        .max_by(|a, b| a.log_weight.total_cmp(&b.log_weight))
+        .map_or((LENGTH.0, SIZE), |node| node.process);
+    Ok(FreeForce {
+        axis,
+        at,
+        mean,
+        sd,
+        width,
+        draws,
+        log_bayes_factor,
+        process: best,
+    })
 }
 
 fn moments(draws: &[Vec<f64>]) -> (Vec<f64>, Vec<f64>) {

@@ -259,8 +259,8 @@ impl Event {
         let mut windows = moments().zip(begins);
         sample_changed(&path, law, forces, release, moments(), |state| {
             let Some((time, begin)) = windows.next() else { return };
-            let lasts =
-                if time < change.window { time } else { change.window };
+            let cut = change.window_begins && time < change.window;
+            let lasts = if cut { time } else { change.window };
             let speed = if lasts > NO_WINDOW {
                 (state.distance - begin) / lasts
             } else {

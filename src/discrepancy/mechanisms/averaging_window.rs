@@ -11,6 +11,9 @@ use crate::scalar::{Kind, Real};
 pub struct AveragingWindow {
     /// What its prior is scaled to.
     pub extent: Extent,
+    /// Whether a window that reaches before the release begins there; else
+    /// the mass counts as at rest before it.
+    pub begins: bool,
 }
 
 impl Candidate for AveragingWindow {
@@ -30,6 +33,10 @@ impl Candidate for AveragingWindow {
         vec![unknown("window", "s", AnyPrior::HalfNormal(1.0))]
     }
 
+    fn form(&self) -> Option<&'static str> {
+        Some(if self.begins { "from the release" } else { "whole" })
+    }
+
     fn formula(&self) -> String {
         "mean of the last `window` seconds".to_owned()
     }
@@ -37,6 +44,7 @@ impl Candidate for AveragingWindow {
 
 impl Missing for AveragingWindow {
     fn change<K: Kind>(&self, values: &[Real<K>]) -> Change<K> {
-        Change { window: values[0], ..Change::default() }
+        let window_begins = self.begins;
+        Change { window: values[0], window_begins, ..Change::default() }
     }
 }

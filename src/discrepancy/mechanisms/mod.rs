@@ -56,7 +56,9 @@ const FRICTION: f64 = 0.15;
 /// The prior sd of a start speed \[m/s\].
 const SPEED: f64 = 5.0;
 /// The prior sd of a release's shift \[m\].
-const DISTANCE: f64 = 10.0;
+const DISTANCE: f64 = 20.0;
+/// The prior sd of the ground's angle \[degrees\].
+const ANGLE: f64 = 3.0;
 /// The prior sd of what a sensor has drifted by the end \[recorded unit\].
 const DRIFT: f64 = 2.0;
 
@@ -103,7 +105,9 @@ pub fn catalogue(
         all.push(Box::new(Curvature { extent }));
     }
     if extent.averages {
-        all.push(Box::new(AveragingWindow { extent }));
+        for begins in [true, false] {
+            all.push(Box::new(AveragingWindow { extent, begins }));
+        }
     }
     let held = |name: &str| blocks.iter().any(|block| block == name);
     all.retain(|m| !m.contained_in().iter().any(|name| held(name)));

@@ -1,6 +1,6 @@
 //! A track whose angle is off.
 
-use super::unknown;
+use super::{ANGLE, unknown};
 use crate::change::{Candidate, Change, Family, Missing, Unknown};
 use crate::observe::Extent;
 use crate::prior::AnyPrior;
@@ -27,7 +27,7 @@ impl Candidate for SlopeBias {
     }
 
     fn unknowns(&self) -> Vec<Unknown> {
-        vec![unknown("angle", "deg", AnyPrior::Normal(0.0, 2.0))]
+        vec![unknown("angle", "deg", AnyPrior::Normal(0.0, ANGLE))]
     }
 
     fn formula(&self) -> String {
