@@ -17,7 +17,7 @@ use super::judge::{Odds, group, judge, label, told, verdict};
 use super::locate::{FreeForce, free_fit, locate};
 use super::mechanisms::catalogue;
 use super::place::mismatch;
-use crate::change::Mechanism;
+use crate::change::{Family, Mechanism};
 use crate::draws::{self, summarise};
 use crate::error::{Error, Result};
 use crate::infer::Progress;
@@ -110,6 +110,7 @@ pub fn diagnose<P: Program>(
     let verdict = verdict(&judged);
     progress.begin("weighing pairs", None);
     let chosen = choose(program, &all, &found, &judged, verdict, seed)?;
+    let (verdict, chosen) = explained(verdict, chosen, &judged, &all);
     progress.begin("showing", None);
     let before = Shown {
         mechanisms: Vec::new(),
@@ -163,6 +164,34 @@ pub fn diagnose<P: Program>(
     Ok(diagnosis)
 }
 
+/// Where the free-form force is more probable than any one mechanism, several
+/// together may still explain as much and say more: they do where their
+/// evidence is above that of the force.
+fn explained(
+    verdict: Verdict,
+    chosen: Option<Chosen>,
+    judged: &[Judged],
+    all: &[Box<dyn Mechanism>],
+) -> (Verdict, Option<Chosen>) {
+    if verdict != Verdict::Unexplained {
+        return (verdict, chosen);
+    }
+    let unknown = judged.iter().find(|m| m.name == "unknown");
+    let Some((chosen, unknown)) = chosen.zip(unknown) else {
+        return (verdict, None);
+    };
+    if chosen.fit.log_evidence <= unknown.log_evidence {
+        return (verdict, None);
+    }
+    let family = chosen.which.iter().map(|&i| all[i].family()).min();
+    let verdict = match family {
+        Some(Family::Physics) => Verdict::MissingPhysics,
+        Some(Family::Noise) | None => Verdict::Noise,
+        Some(_) => Verdict::Measurement,
+    };
+    (verdict, Some(chosen))
+}
+
 /// The free-form force along the axis with the most evidence, fitted.
 fn free_form<P: Program>(
     program: &P,
@@ -189,7 +218,7 @@ fn choose<P: Program>(
     verdict: Verdict,
     seed: Seed,
 ) -> Result<Option<Chosen>> {
-    if matches!(verdict, Verdict::Adequate | Verdict::Unexplained) {
+    if verdict == Verdict::Adequate {
         return Ok(None);
     }
     let best = best_variants(all, found, judged);

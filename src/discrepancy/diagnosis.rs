@@ -1,5 +1,7 @@
 //! What a diagnosis found, as plain data; and as `diagnosis.json`.
 
+use std::f64::consts::LN_10;
+
 use serde_json::{Map, Value, json};
 
 use super::locate::FreeForce;
@@ -293,6 +295,14 @@ fn judged_json(m: &Judged) -> Value {
     value
 }
 
+fn force_json(force: &FreeForce) -> Value {
+    json!({
+        "coordinate": axis_name(force.axis), "at": force.at,
+        "mean": force.mean, "sd": force.sd, "band": force.width,
+        "log10_bayes_factor": force.log_bayes_factor / LN_10,
+    })
+}
+
 impl Diagnosis {
     /// `diagnosis.json`.
     pub fn json(&self) -> Value {
@@ -335,6 +345,8 @@ impl Diagnosis {
                 "model": self.corrected.model,
                 "mechanisms": self.corrected.labels,
             },
+            "forces":
+                self.forces.iter().map(force_json).collect::<Vec<_>>(),
             "separating": self.separating,
             "seconds": self.seconds,
             "warnings": self.warnings,
