@@ -5,13 +5,13 @@
 //! readers, clipping, dashes and small files need elements that those do not
 //! offer.
 
-mod axes;
+pub(crate) mod axes;
 mod boxes;
-mod canvas;
+pub(crate) mod canvas;
 mod curves;
 mod densities;
 mod pairs;
-mod palette;
+pub(crate) mod palette;
 mod recording;
 mod residuals;
 mod traces;
@@ -59,7 +59,7 @@ pub fn pictures(report: &CalibrationReport) -> Vec<Picture> {
 }
 
 /// `name [unit]`, or the name alone for a number without a unit.
-fn with_unit(name: &str, unit: &str) -> String {
+pub(crate) fn with_unit(name: &str, unit: &str) -> String {
     match text::unit(unit).as_str() {
         "" => name.to_owned(),
         unit => format!("{name} [{unit}]"),
