@@ -28,7 +28,7 @@ pub fn page(d: &Diagnosis) -> String {
             @for (i, p) in d.pictured.iter().enumerate() {
                 (pictured(d, p, i))
             }
-            (section("The force that is missing", forces(d)))
+            (section(force_title(d.verdict), forces(d)))
             (section("What may be missing", bars(d)))
             (sentences(d))
             (corrected(d))
@@ -65,6 +65,15 @@ fn words(d: &Diagnosis) -> Markup {
                 }
             }
         }
+    }
+}
+
+fn force_title(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::MissingPhysics | Verdict::Unexplained => {
+            "The force that is missing"
+        }
+        _ => "Whether a force is missing",
     }
 }
 
@@ -129,6 +138,7 @@ fn sentences(d: &Diagnosis) -> Markup {
         .collect();
     html! {
         @if !told.is_empty() {
+            h3 { "What they say" }
             dl { @for m in told {
                 dt { (plain(&m.name)) }
                 dd { (plain(&m.says)) }

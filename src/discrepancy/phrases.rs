@@ -140,7 +140,11 @@ pub(super) fn probability(p: f64) -> String {
 
 /// log10 of a Bayes factor, with the sign that tells for or against.
 pub(super) fn log10(x: f64) -> String {
-    if x.is_finite() { format!("{x:+.1}") } else { significant(x, 2) }
+    match x {
+        x if !x.is_finite() => significant(x, 2),
+        x if x.abs() < 0.05 => "0.0".to_owned(),
+        x => format!("{x:+.1}"),
+    }
 }
 
 /// A parameter's median with its 90 % interval.

@@ -11,7 +11,7 @@ const WIDTHS: (usize, usize) = (44, 80);
 /// How many mechanisms the table has.
 const MECHANISMS: usize = 8;
 /// The widest name of a mechanism.
-const NAME: usize = 20;
+const NAME: usize = 18;
 
 /// The diagnosis for a terminal, at most `width` characters a line (at least
 /// 44, at most 80): the words, the mechanisms, before and after, and the
@@ -42,12 +42,12 @@ fn mechanisms(d: &Diagnosis, width: usize) -> Vec<String> {
         return Vec::new();
     }
     let line = |name: &str, p: &str, bf: &str, size: &str| {
-        let start = format!("{name:<NAME$}  {p:>11}  {bf:>8}");
+        let start = format!("{name:<NAME$}  {p:>7}  {bf:>8}");
         let room = width.saturating_sub(start.chars().count() + 2);
         let size = if room < 12 { "" } else { &shorten(size, room) };
         format!("{start}  {size}")
     };
-    let head = line("mechanism", "probability", "log10 BF", "its size (90 %)");
+    let head = line("mechanism", "prob.", "log10 BF", "its size (90 %)");
     let mut lines = vec![String::new(), head, "─".repeat(width)];
     lines.extend(shown.iter().map(|m| {
         line(
@@ -109,7 +109,13 @@ fn equation(d: &Diagnosis, width: usize) -> Vec<String> {
         "The model:".to_owned()
     });
     for text in equation {
-        for (i, line) in wrap(&plain(text), width - 6).iter().enumerate() {
+        let text = plain(text);
+        // A line that fits keeps the blanks that align it.
+        if text.chars().count() + 2 <= width {
+            lines.push(format!("  {text}"));
+            continue;
+        }
+        for (i, line) in wrap(&text, width - 6).iter().enumerate() {
             let indent = if i == 0 { "  " } else { "      " };
             lines.push(format!("{indent}{line}"));
         }

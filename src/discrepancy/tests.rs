@@ -43,12 +43,12 @@ fn the_words_of_a_patch() {
     for said in [
         "Physics is missing: Voellmy friction with iid errors",
         "(synthetic data)",
-        "From 132 to 187 m (8.1 to 10.6 s) the mass is braked by 0.90 m/s² \
+        "From 132 to 187 m (8.1 to 10.6 s) the mass is braked by 0.9 m/s² \
          (90 % interval 0.60 to 1.20) more than Voellmy friction gives, as \
          if mu were 0.14 higher there.",
         "A patch of higher friction explains this (probability 0.93); \
          entrainment of snow along a stretch is the rival (0.05).",
-        "delta_mu is 0.139 (90 % interval 0.111 to 0.167)",
+        "friction-patch: delta_mu = 0.139 (0.111 to 0.167)",
         "falls from 1.9 m/s to 0.31 m/s",
         "a log10 Bayes factor of 21.3",
         "missed by 0.35 m/s instead of 2.2",

@@ -103,7 +103,7 @@ fn difference(d: &Diagnosis, m: &Mismatch) -> String {
         "{} the mass {more}{be} braked by {} m/s²{} {sense} than {law} \
          gives{}{}{end}.",
         capital(&stretch(m)),
-        significant(size, 2),
+        short(size, 2),
         force_interval(m),
         as_if(m),
         parts(m),
@@ -143,7 +143,7 @@ fn parts(m: &Mismatch) -> String {
         .take(2 * TOLD)
         .map(|(from, to, force)| {
             let sense = if *force > 0.0 { "less" } else { "more" };
-            let size = significant(force.abs(), 2);
+            let size = short(force.abs(), 2);
             format!("{size} {sense} from {}", range(*from, *to, unit))
         })
         .collect();
@@ -228,28 +228,27 @@ fn rival(d: &Diagnosis) -> String {
     }
 }
 
-/// How large the selected mechanisms are; a sentence each.
-fn sizes(d: &Diagnosis) -> Vec<String> {
+/// How large the selected mechanisms are.
+fn sizes(d: &Diagnosis) -> Option<String> {
     let of = |name: &String| -> Option<String> {
         let amounts = amounts(d, name);
-        let clauses: Vec<String> = amounts
-            .iter()
-            .take(4)
-            .enumerate()
-            .map(|(i, p)| amount(p, name, i == 0))
-            .collect();
+        let clauses: Vec<String> =
+            amounts.iter().take(4).map(|p| amount(p, name)).collect();
         (!clauses.is_empty())
-            .then(|| format!("Of {}, {}.", plain(name), clauses.join(", ")))
+            .then(|| format!("{}: {}", plain(name), clauses.join(", ")))
     };
-    d.selected.iter().take(TOLD).filter_map(of).collect()
+    let told: Vec<String> =
+        d.selected.iter().take(TOLD).filter_map(of).collect();
+    (!told.is_empty()).then(|| {
+        format!("In figures, with 90 % intervals, {}.", told.join("; "))
+    })
 }
 
-/// `delta_mu is 0.14 (90 % interval 0.11 to 0.17)`.
-fn amount(p: &Told, mechanism: &str, first: bool) -> String {
+/// `delta_mu = 0.14 (0.11 to 0.17)`.
+fn amount(p: &Told, mechanism: &str) -> String {
     let middle = with_unit(&beside(p.q50, p.sd), &p.unit);
     let name = plain(own_name(p, mechanism));
-    let words = if first { "90 % interval " } else { "" };
-    format!("{name} is {middle} ({words}{})", interval(p))
+    format!("{name} = {middle} ({})", interval(p))
 }
 
 /// What adding it brings to the fit.

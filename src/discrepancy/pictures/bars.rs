@@ -49,7 +49,7 @@ pub(in crate::discrepancy) fn bars(d: &Diagnosis) -> Option<Figure> {
 }
 
 fn grid(canvas: &mut Canvas, axes: &Axes) {
-    for p in [0.0, 0.25, 0.5, 0.75, 1.0] {
+    for p in [0.0, 0.2, 0.4, 0.6, 0.8, 1.0] {
         let ends = (axes.at(p, 0.0), axes.at(p, 1.0));
         canvas.line(ends.0, ends.1, Pen::new(FAINT, 1.0));
     }

@@ -105,7 +105,10 @@ fn panel(
     let (left, above) = (frame.left, frame.top - 8.0);
     canvas.heading((left, above), over);
     let factor = log10(f.log_bayes_factor / LN_10).replace('-', "−");
-    let text = format!("log10 Bayes factor {factor}");
+    // A small panel has no room for more.
+    let small = frame.width() < 0.5 * WIDTH;
+    let what = if small { "log10 BF" } else { "log10 Bayes factor" };
+    let text = format!("{what} {factor}");
     canvas.text((frame.right, above), Anchor::End, GREY, &text);
     senses(canvas, &axes);
 }
@@ -163,7 +166,7 @@ fn caption(d: &Diagnosis) -> String {
         let over = names(best.axis).0;
         out += &format!(
             " The evidence is greatest for a force {over}; Bayes factors \
-             are against the model without one."
+             (BF) are against the model without one."
         );
     }
     out

@@ -5,9 +5,12 @@ use super::{Figure, along_in, interpolate, roomy, shade};
 use crate::discrepancy::{Diagnosis, Pictured};
 use crate::physics::forces::Axis;
 use crate::predict::Bands;
+use crate::report::digits::ticks;
 use crate::report::svg::axes::{Axes, Key, Labels, Scale, legend};
 use crate::report::svg::canvas::{Canvas, FONT, Frame, Point, WIDTH};
-use crate::report::svg::palette::{FLOW, FULL, INK, MASS, POSTERIOR, Pen};
+use crate::report::svg::palette::{
+    FAINT, FLOW, FULL, INK, MASS, POSTERIOR, Pen,
+};
 use crate::report::svg::with_unit;
 use crate::report::text::{shorten, thinned};
 
@@ -121,6 +124,9 @@ impl Panel<'_> {
         let quantity = shorten(&self.p.quantity, 24);
         let name = with_unit(&quantity, &self.p.unit);
         let x = if self.over == Axis::Time { "time [s]" } else { PLACE };
+        if !self.first {
+            grid(canvas, &axes);
+        }
         let y = self.first.then_some(name.as_str());
         axes.draw(canvas, Labels { x: Some(x), y });
         canvas.clip(frame);
@@ -173,6 +179,16 @@ impl Panel<'_> {
         let points: Vec<Point> = kept.into_iter().map(|i| points[i]).collect();
         let size = if points.len() > 150 { 2.2 } else { 3.6 };
         canvas.dots(&points, Pen::new(INK, size));
+    }
+}
+
+/// The lines of a panel whose labels stand at its neighbour.
+fn grid(canvas: &mut Canvas, axes: &Axes) {
+    let Frame { left, right, .. } = axes.frame;
+    let count = (PANEL / 42.0) as usize;
+    for (value, _) in ticks(axes.y.low, axes.y.high, count) {
+        let y = axes.at(0.0, value).1;
+        canvas.line((left, y), (right, y), Pen::new(FAINT, 1.0));
     }
 }
 
