@@ -63,6 +63,8 @@ pub struct Baseline {
     /// The sd of the errors themselves, correlated or not, beside the
     /// innovations'; where the noise is an autoregression.
     pub stationary_sd: Option<f64>,
+    /// The sd of the innovations; where the noise is an autoregression.
+    pub innovation_sd: Option<f64>,
     /// The known error of a value, where the recording gives one.
     pub instrument: Option<f64>,
 }
@@ -317,6 +319,7 @@ impl Diagnosis {
                 "shapiro_wilk_p": b.shapiro_wilk_p,
                 "predictive_p": b.predictive_p,
                 "stationary_sd": b.stationary_sd,
+                "innovation_sd": b.innovation_sd,
                 "instrument": b.instrument,
             },
             "verdict": self.verdict.name(),

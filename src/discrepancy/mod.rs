@@ -8,11 +8,18 @@ mod before_and_after;
 mod diagnose;
 mod diagnosis;
 mod fit;
+#[cfg(test)]
+mod fixture;
 mod judge;
 mod locate;
 mod page;
 mod paste;
+mod phrases;
+mod pictures;
 mod place;
+mod summary;
+#[cfg(test)]
+mod tests;
 mod words;
 
 pub use attribute::{Attribution, attribute, pair};
@@ -25,4 +32,5 @@ pub use fit::{Fit, fit};
 pub use judge::Odds;
 pub use locate::{CELLS, FreeForce, locate};
 pub use page::page;
-pub use words::summary;
+pub use summary::summary;
+pub use words::in_words;

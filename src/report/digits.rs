@@ -2,7 +2,7 @@
 //! uncertainty supports.
 
 /// What stands where a number is not available.
-pub(super) const NONE: &str = "n/a";
+pub(crate) const NONE: &str = "n/a";
 
 /// The decimal exponent of a number: 0 for 1.5, 2 for 480.
 fn exponent(x: f64) -> i32 {
@@ -13,13 +13,13 @@ fn exponent(x: f64) -> i32 {
 }
 
 /// The number with that many significant digits.
-pub(super) fn significant(x: f64, digits: usize) -> String {
+pub(crate) fn significant(x: f64, digits: usize) -> String {
     fixed(x, digits as i32 - 1 - exponent(x), digits)
 }
 
 /// The number with at most that many significant digits, zeros at the end of
 /// its decimals left out.
-pub(super) fn short(x: f64, digits: usize) -> String {
+pub(crate) fn short(x: f64, digits: usize) -> String {
     let text = significant(x, digits);
     if !text.contains('.') || text.contains('e') {
         return text;
@@ -29,7 +29,7 @@ pub(super) fn short(x: f64, digits: usize) -> String {
 
 /// The number with as many decimals as give its standard deviation two
 /// significant digits.
-pub(super) fn beside(x: f64, sd: f64) -> String {
+pub(crate) fn beside(x: f64, sd: f64) -> String {
     let comparable = x == 0.0 || sd.abs() > 1e-6 * x.abs();
     if !sd.is_finite() || sd == 0.0 || !comparable {
         return significant(x, 4);
@@ -50,7 +50,7 @@ fn fixed(x: f64, decimals: i32, digits: usize) -> String {
 }
 
 /// A p-value.
-pub(super) fn p_value(p: f64) -> String {
+pub(crate) fn p_value(p: f64) -> String {
     match p {
         p if !p.is_finite() => NONE.to_owned(),
         p if p < 0.001 => "< 0.001".to_owned(),
@@ -59,12 +59,12 @@ pub(super) fn p_value(p: f64) -> String {
 }
 
 /// A count or an effective sample size.
-pub(super) fn whole(x: f64) -> String {
+pub(crate) fn whole(x: f64) -> String {
     if x.abs() >= 1e7 { significant(x, 3) } else { fixed(x, 0, 3) }
 }
 
 /// A count with thin spaces between groups of three digits.
-pub(super) fn grouped(n: u64) -> String {
+pub(crate) fn grouped(n: u64) -> String {
     let digits = n.to_string();
     let mut out = String::new();
     for (i, c) in digits.chars().enumerate() {
@@ -77,7 +77,7 @@ pub(super) fn grouped(n: u64) -> String {
 }
 
 /// A share in per cent.
-pub(super) fn per_cent(share: f64) -> String {
+pub(crate) fn per_cent(share: f64) -> String {
     if !share.is_finite() {
         return NONE.to_owned();
     }
@@ -86,7 +86,7 @@ pub(super) fn per_cent(share: f64) -> String {
 
 /// Round values between two bounds, some `count` of them and two if the
 /// bounds allow it, with labels of equal precision.
-pub(super) fn ticks(low: f64, high: f64, count: usize) -> Vec<(f64, String)> {
+pub(crate) fn ticks(low: f64, high: f64, count: usize) -> Vec<(f64, String)> {
     let count = count.max(1);
     let mut tried = (count..count + 4).map(|n| ticks_of(low, high, n));
     let enough = tried.find(|marks| marks.len() > 1);

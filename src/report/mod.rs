@@ -6,14 +6,14 @@
 //! function returns a `String` (or a JSON value) and accepts any numbers:
 //! what is not finite is left out of pictures and is `n/a` in tables.
 
-mod digits;
+pub(crate) mod digits;
 #[cfg(test)]
 mod fixture;
 mod json;
 mod page;
 pub mod svg;
 mod terminal;
-mod text;
+pub(crate) mod text;
 mod words;
 
 pub use crate::predict::Bands;

@@ -2,14 +2,14 @@
 
 /// The text with control characters (terminal escapes, characters that XML
 /// forbids) replaced by a visible mark.
-pub(super) fn plain(text: &str) -> String {
+pub(crate) fn plain(text: &str) -> String {
     let forbidden =
         |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
     text.chars().map(|c| if forbidden(c) { '\u{fffd}' } else { c }).collect()
 }
 
 /// A unit to print: empty for a number without one, exponents raised.
-pub(super) fn unit(unit: &str) -> String {
+pub(crate) fn unit(unit: &str) -> String {
     if unit == "1" {
         return String::new();
     }
@@ -27,7 +27,7 @@ pub(super) fn unit(unit: &str) -> String {
 }
 
 /// The text with everything escaped that has a meaning in XML.
-pub(super) fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in plain(text).chars() {
         match c {
@@ -43,7 +43,7 @@ pub(super) fn escape(text: &str) -> String {
 }
 
 /// At most `most` characters, the middle left out where there are more.
-pub(super) fn shorten(text: &str, most: usize) -> String {
+pub(crate) fn shorten(text: &str, most: usize) -> String {
     let count = text.chars().count();
     if count <= most {
         return text.to_owned();
@@ -56,7 +56,7 @@ pub(super) fn shorten(text: &str, most: usize) -> String {
 
 /// The text broken into lines of at most `width` characters, at blanks where
 /// there are any.
-pub(super) fn wrap(text: &str, width: usize) -> Vec<String> {
+pub(crate) fn wrap(text: &str, width: usize) -> Vec<String> {
     let width = width.max(1);
     let mut lines = Vec::new();
     let mut line = String::new();
@@ -81,7 +81,7 @@ pub(super) fn wrap(text: &str, width: usize) -> Vec<String> {
 
 /// At most `most` of the indices `0..count`, evenly spread, the last one
 /// among them.
-pub(super) fn thinned(count: usize, most: usize) -> Vec<usize> {
+pub(crate) fn thinned(count: usize, most: usize) -> Vec<usize> {
     if count <= most.max(2) {
         return (0..count).collect();
     }

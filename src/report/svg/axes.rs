@@ -6,14 +6,14 @@ use crate::report::digits::ticks;
 
 /// A line of numbers laid on the canvas.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Scale {
-    pub(super) low: f64,
-    pub(super) high: f64,
+pub(crate) struct Scale {
+    pub(crate) low: f64,
+    pub(crate) high: f64,
 }
 
 impl Scale {
     /// The range of the finite numbers; from 0 to 1 where there are none.
-    pub(super) fn of(numbers: impl IntoIterator<Item = f64>) -> Self {
+    pub(crate) fn of(numbers: impl IntoIterator<Item = f64>) -> Self {
         let finite = numbers.into_iter().filter(|x| x.abs() < 1e150);
         let (low, high) = finite
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
@@ -27,18 +27,18 @@ impl Scale {
         Self { low: low - pad, high: high + pad }
     }
 
-    pub(super) fn span(&self) -> f64 {
+    pub(crate) fn span(&self) -> f64 {
         self.high - self.low
     }
 
     /// The same with a share of its span added at both ends.
-    pub(super) fn padded(self, share: f64) -> Self {
+    pub(crate) fn padded(self, share: f64) -> Self {
         let pad = share * self.span();
         Self { low: self.low - pad, high: self.high + pad }
     }
 
     /// What both scales have in common; this one where that is nothing.
-    pub(super) fn within(self, other: Self) -> Self {
+    pub(crate) fn within(self, other: Self) -> Self {
         let both = Self {
             low: self.low.max(other.low),
             high: self.high.min(other.high),
@@ -47,29 +47,29 @@ impl Scale {
     }
 
     /// The least scale that holds both.
-    pub(super) fn with(self, other: Self) -> Self {
+    pub(crate) fn with(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 }
 
 /// Two scales on a frame.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Axes {
-    pub(super) frame: Frame,
-    pub(super) x: Scale,
-    pub(super) y: Scale,
+pub(crate) struct Axes {
+    pub(crate) frame: Frame,
+    pub(crate) x: Scale,
+    pub(crate) y: Scale,
 }
 
 /// Which labels an axis bears: its ticks' and its name.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Labels<'a> {
-    pub(super) x: Option<&'a str>,
-    pub(super) y: Option<&'a str>,
+pub(crate) struct Labels<'a> {
+    pub(crate) x: Option<&'a str>,
+    pub(crate) y: Option<&'a str>,
 }
 
 impl Axes {
     /// Where a pair of numbers lies.
-    pub(super) fn at(&self, x: f64, y: f64) -> Point {
+    pub(crate) fn at(&self, x: f64, y: f64) -> Point {
         let across = (x - self.x.low) / self.x.span();
         let up = (y - self.y.low) / self.y.span();
         (
@@ -79,19 +79,19 @@ impl Axes {
     }
 
     /// Where pairs of numbers lie.
-    pub(super) fn points(&self, x: &[f64], y: &[f64]) -> Vec<Point> {
+    pub(crate) fn points(&self, x: &[f64], y: &[f64]) -> Vec<Point> {
         x.iter().zip(y).map(|(x, y)| self.at(*x, *y)).collect()
     }
 
     /// The room that the labels of the y axis need at its left.
-    pub(super) fn margin(y: Scale, height: f64) -> f64 {
+    pub(crate) fn margin(y: Scale, height: f64) -> f64 {
         let labels = y_ticks(y, height);
         let widest = labels.iter().map(|t| text_width(&t.1));
         (widest.fold(0.0, f64::max) + 34.0).min(0.25 * WIDTH)
     }
 
     /// Draws grid, ticks, axes and names.
-    pub(super) fn draw(&self, canvas: &mut Canvas, labels: Labels<'_>) {
+    pub(crate) fn draw(&self, canvas: &mut Canvas, labels: Labels<'_>) {
         if let Some(name) = labels.y {
             self.draw_y(canvas, name);
         }
@@ -154,7 +154,7 @@ fn y_ticks(scale: Scale, height: f64) -> Vec<(f64, String)> {
 
 /// The sign of a legend entry.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Key {
+pub(crate) enum Key {
     Line(Pen),
     Dot(Pen),
     Fill(&'static str),
@@ -162,7 +162,7 @@ pub(super) enum Key {
 
 /// Draws a legend from the left, in as many lines as it takes, its first at
 /// `top`; returns where it ends.
-pub(super) fn legend(
+pub(crate) fn legend(
     canvas: &mut Canvas,
     left: f64,
     top: f64,

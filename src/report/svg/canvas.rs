@@ -9,16 +9,16 @@ use super::palette::{INK, Pen};
 use crate::report::text::escape;
 
 /// The font size of all text [px at full size].
-pub(super) const FONT: f64 = 13.0;
+pub(crate) const FONT: f64 = 13.0;
 /// The width of every picture.
-pub(super) const WIDTH: f64 = 640.0;
+pub(crate) const WIDTH: f64 = 640.0;
 
 /// A point on the canvas, y downwards.
-pub(super) type Point = (f64, f64);
+pub(crate) type Point = (f64, f64);
 
 /// Where a text is fixed to its point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Anchor {
+pub(crate) enum Anchor {
     Start,
     Middle,
     End,
@@ -26,27 +26,27 @@ pub(super) enum Anchor {
 
 /// A rectangle.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame {
-    pub(super) left: f64,
-    pub(super) top: f64,
-    pub(super) right: f64,
-    pub(super) bottom: f64,
+pub(crate) struct Frame {
+    pub(crate) left: f64,
+    pub(crate) top: f64,
+    pub(crate) right: f64,
+    pub(crate) bottom: f64,
 }
 
 impl Frame {
-    pub(super) fn width(&self) -> f64 {
+    pub(crate) fn width(&self) -> f64 {
         self.right - self.left
     }
 
-    pub(super) fn height(&self) -> f64 {
+    pub(crate) fn height(&self) -> f64 {
         self.bottom - self.top
     }
 }
 
 /// A picture being drawn.
 #[derive(Debug)]
-pub(super) struct Canvas {
-    name: &'static str,
+pub(crate) struct Canvas {
+    name: String,
     height: f64,
     clips: usize,
     body: String,
@@ -60,14 +60,14 @@ fn number(x: f64) -> String {
 }
 
 /// About how wide a text is drawn.
-pub(super) fn text_width(text: &str) -> f64 {
+pub(crate) fn text_width(text: &str) -> f64 {
     0.56 * FONT * text.chars().count() as f64
 }
 
 impl Canvas {
     /// An empty canvas; the name makes its identifiers unique on a page.
-    pub(super) fn new(name: &'static str, height: f64) -> Self {
-        Self { name, height, clips: 0, body: String::new() }
+    pub(crate) fn new(name: impl Into<String>, height: f64) -> Self {
+        Self { name: name.into(), height, clips: 0, body: String::new() }
     }
 
     // Writing into a String cannot fail.
@@ -77,12 +77,12 @@ impl Canvas {
     }
 
     /// A straight line.
-    pub(super) fn line(&mut self, a: Point, b: Point, pen: Pen) {
+    pub(crate) fn line(&mut self, a: Point, b: Point, pen: Pen) {
         self.curve(&[a, b], pen);
     }
 
     /// A line through points, broken where one is not finite.
-    pub(super) fn curve(&mut self, points: &[Point], pen: Pen) {
+    pub(crate) fn curve(&mut self, points: &[Point], pen: Pen) {
         let path = path(points);
         if !path.is_empty() {
             self.push(format_args!(
@@ -94,7 +94,7 @@ impl Canvas {
 
     /// The area between two lines with the same x, broken where either is
     /// not finite.
-    pub(super) fn area(
+    pub(crate) fn area(
         &mut self,
         low: &[Point],
         high: &[Point],
@@ -118,7 +118,7 @@ impl Canvas {
     }
 
     /// Round dots, all in one path: lines of no length with round ends.
-    pub(super) fn dots(&mut self, points: &[Point], pen: Pen) {
+    pub(crate) fn dots(&mut self, points: &[Point], pen: Pen) {
         let mut path = String::new();
         for p in points.iter().filter(|p| p.0.is_finite() && p.1.is_finite()) {
             let _ = write!(path, "M{} {}h.01", number(p.0), number(p.1));
@@ -132,7 +132,7 @@ impl Canvas {
     }
 
     /// A filled rectangle.
-    pub(super) fn rectangle(&mut self, at: Frame, fill: &str, opacity: f64) {
+    pub(crate) fn rectangle(&mut self, at: Frame, fill: &str, opacity: f64) {
         self.push(format_args!(
             "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" \
              fill=\"{fill}\" fill-opacity=\"{opacity}\"/>",
@@ -144,7 +144,7 @@ impl Canvas {
     }
 
     /// A text on one line.
-    pub(super) fn text(
+    pub(crate) fn text(
         &mut self,
         at: Point,
         anchor: Anchor,
@@ -155,13 +155,13 @@ impl Canvas {
     }
 
     /// A text in bold type.
-    pub(super) fn heading(&mut self, at: Point, text: &str) {
+    pub(crate) fn heading(&mut self, at: Point, text: &str) {
         let bold = " font-weight=\"600\"";
         self.label(at, Anchor::Start, INK, bold, text);
     }
 
     /// A text in the middle of a point, read from below to above.
-    pub(super) fn upwards(&mut self, at: Point, colour: &str, text: &str) {
+    pub(crate) fn upwards(&mut self, at: Point, colour: &str, text: &str) {
         let turn = format!(
             " transform=\"rotate(-90 {} {})\"",
             number(at.0),
@@ -192,7 +192,7 @@ impl Canvas {
     }
 
     /// From here on only what lies inside the frame is seen.
-    pub(super) fn clip(&mut self, to: Frame) {
+    pub(crate) fn clip(&mut self, to: Frame) {
         let id = format!("{}-{}", self.name, self.clips);
         self.clips += 1;
         self.push(format_args!(
@@ -206,12 +206,12 @@ impl Canvas {
     }
 
     /// Ends what `clip` began.
-    pub(super) fn unclip(&mut self) {
+    pub(crate) fn unclip(&mut self) {
         self.push(format_args!("</g>"));
     }
 
     /// The document, with what a screen reader says about it.
-    pub(super) fn finish(self, title: &str) -> String {
+    pub(crate) fn finish(self, title: &str) -> String {
         let (title, height) = (escape(title), number(self.height));
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" \

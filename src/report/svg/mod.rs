@@ -5,14 +5,14 @@
 //! readers, clipping, dashes and small files need elements that those do not
 //! offer.
 
-mod axes;
+pub(crate) mod axes;
 mod boxes;
-mod canvas;
+pub(crate) mod canvas;
 mod curves;
 mod densities;
 mod matrix;
 mod pairs;
-mod palette;
+pub(crate) mod palette;
 mod recording;
 mod reliability;
 mod residuals;
@@ -63,7 +63,7 @@ pub fn pictures(report: &CalibrationReport) -> Vec<Picture> {
 }
 
 /// `name [unit]`, or the name alone for a number without a unit.
-fn with_unit(name: &str, unit: &str) -> String {
+pub(crate) fn with_unit(name: &str, unit: &str) -> String {
     match text::unit(unit).as_str() {
         "" => name.to_owned(),
         unit => format!("{name} [{unit}]"),
