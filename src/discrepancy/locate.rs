@@ -49,7 +49,7 @@ struct FreeForm {
 }
 
 /// The range that a free-form force covers along an axis.
-pub fn range(extent: &Extent, axis: Axis) -> Range {
+pub(super) fn range(extent: &Extent, axis: Axis) -> Range {
     match axis {
         Axis::Place => Range { begin: extent.begin, span: extent.run },
         Axis::Time => Range { begin: 0.0, span: extent.duration },
