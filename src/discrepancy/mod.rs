@@ -12,6 +12,7 @@ mod judge;
 mod locate;
 mod paste;
 mod place;
+mod together;
 
 pub use attribute::{Attribution, attribute, pair};
 pub use diagnose::{Options, diagnose};
@@ -22,3 +23,4 @@ pub use diagnosis::{
 pub use fit::{Fit, fit};
 pub use judge::Odds;
 pub use locate::{CELLS, FreeForce, locate};
+pub use together::{PerEvent, Pooled, Sharing, Together};
