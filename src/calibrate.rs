@@ -68,6 +68,7 @@ pub fn calibrate(
         event: model.event().name().to_owned(),
         friction: model.friction(),
         noise: model.noise(),
+        mechanisms: model.mechanisms(),
         backend: backend.name().to_owned(),
         seed,
         parameters: parameters(model, &draws, &summaries, mode.mode.as_ref()),
@@ -184,7 +185,6 @@ fn parameters(
     mode: Option<&Mode>,
 ) -> Vec<ParameterReport> {
     let rows = draws.thinned(SCATTER);
-    let laws = model.friction_dimension();
     let priors: Vec<_> = model.priors().collect();
     summaries
         .par_iter()
@@ -195,7 +195,7 @@ fn parameters(
             ParameterReport {
                 name: s.name.clone(),
                 unit: s.unit.clone(),
-                of_errors: i >= laws,
+                of_errors: !model.is_of_motion(i),
                 map: mode.map(|m| m.natural[i]),
                 mean: s.mean,
                 sd: s.sd,

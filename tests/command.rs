@@ -97,6 +97,81 @@ fn bad_arguments_end_in_exit_code_2() {
     }
 }
 
+/// The good event with mechanisms, and with other lines below its priors.
+fn corrected(name: &str, mechanisms: &str, priors: &str) -> PathBuf {
+    let folder = fresh(name);
+    std::fs::create_dir_all(&folder).unwrap();
+    let list = format!("noise = \"iid\"\nmechanisms = [{mechanisms}]");
+    let event =
+        cases::EVENT.replacen("noise = \"iid\"", &list, 1) + priors + "\n";
+    std::fs::write(folder.join("event.toml"), event).unwrap();
+    std::fs::write(folder.join("track.csv"), cases::TRACK).unwrap();
+    std::fs::write(folder.join("recording.csv"), cases::RECORDING).unwrap();
+    folder
+}
+
+#[test]
+fn mechanisms_that_are_none_are_refused() {
+    let wrong = [
+        ("\"friction-pach\"", "", "friction-patch"),
+        ("\"turbulent-drag\"", "", "already have"),
+        ("\"curvature\"", "", "nothing to act on"),
+        ("\"surge\", \"surge\"", "", "twice"),
+        ("\"friction-step\", \"friction-step(time)\"", "", "twice"),
+        ("\"surge\"", "\"surge.drag\" = \"Normal(0, 1)\"", "surge.force"),
+    ];
+    for (mechanisms, priors, part) in wrong {
+        let folder = corrected("no-mechanism", mechanisms, priors);
+        let output = couloir(&["calibrate", &folder.to_string_lossy()]);
+        let text = said(&output);
+        assert_eq!(output.status.code(), Some(2), "{mechanisms}: {text}");
+        assert_eq!(text.lines().count(), 1, "{text}");
+        assert!(text.contains(part), "{text}");
+        assert!(text.contains("event.toml"), "{text}");
+    }
+}
+
+#[test]
+fn a_corrected_event_runs() {
+    let folder = corrected(
+        "corrected",
+        "\"friction-patch\"",
+        "\"friction-patch.delta_mu\" = \"Normal(0, 0.1)\"",
+    );
+    let event = folder.to_string_lossy();
+    let mut arguments = vec!["calibrate", &event, "--json"];
+    arguments.extend(QUICK);
+    let output = couloir(&arguments);
+    assert!(output.status.success(), "{}", said(&output));
+    let json: Value = serde_json::from_str(&printed(&output)).unwrap();
+    assert_eq!(json["model"]["mechanisms"][0], "friction-patch");
+    assert!(json["parameters"]["friction-patch.delta_mu"]["sd"].is_f64());
+    let model = |model| {
+        let mut all = vec!["compare", &event, "--json", "--model", model];
+        all.extend(["--model", "coulomb, iid, none"]);
+        all.extend(QUICK);
+        let output = couloir(&all);
+        assert!(output.status.success(), "{}", said(&output));
+        serde_json::from_str::<Value>(&printed(&output)).unwrap()
+    };
+    let json = model("coulomb, iid");
+    assert_eq!(json["models"][0]["mechanisms"][0], "friction-patch");
+    assert!(json["models"][1]["mechanisms"].is_null());
+    let with = ["from=0", "length=20", "delta_mu=0.4"]
+        .map(|set| format!("friction-patch.{set}"));
+    let mut ends = Vec::new();
+    for delta in ["friction-patch.delta_mu=0", &with[2]] {
+        let sets = [&with[0], &with[1], delta, "mu=0.3", "xi=1000"];
+        let mut all = vec!["simulate", &event, "--json"];
+        sets.iter().for_each(|set| all.extend(["--set", set]));
+        let output = couloir(&all);
+        assert!(output.status.success(), "{}", said(&output));
+        let json: Value = serde_json::from_str(&printed(&output)).unwrap();
+        ends.push(json["velocity"][3].as_f64().unwrap());
+    }
+    assert!(ends[1] < ends[0] - 1.0, "{ends:?}");
+}
+
 #[test]
 fn a_prior_of_no_parameter_is_refused_unless_the_law_was_changed() {
     let folder = fresh("unused-prior");

@@ -70,6 +70,12 @@ pub trait Candidate: Debug + Send + Sync {
     /// Its name, such as "friction-patch".
     fn name(&self) -> &'static str;
 
+    /// Its name in an event file: where a name has several variants, with
+    /// what tells it from the others, such as "friction-step(time)".
+    fn label(&self) -> String {
+        self.name().to_owned()
+    }
+
     /// What sort of thing it changes.
     fn family(&self) -> Family;
 
@@ -79,6 +85,12 @@ pub trait Candidate: Debug + Send + Sync {
     /// What is unknown; the first is the amplitude, whose zero gives the
     /// model back as it was.
     fn unknowns(&self) -> Vec<Unknown>;
+
+    /// How many of the unknowns, the first ones, are amplitude and places;
+    /// the others follow from them and the data.
+    fn leading(&self) -> usize {
+        self.unknowns().len()
+    }
 
     /// Along which axis, where there are variants over several.
     fn coordinate(&self) -> Option<Axis> {

@@ -43,6 +43,9 @@ pub struct Change<K: Kind> {
     /// How many values of a series are known; those after them are not
     /// scored.
     pub known: Option<usize>,
+    /// What is changed of each of several events besides; empty where all
+    /// are changed alike.
+    pub own: Vec<Self>,
 }
 
 /// Along what the spread of the noise may rise.
@@ -79,6 +82,7 @@ impl<K: Kind> Default for Change<K> {
             noise: Alteration::default(),
             spread_along: Covariate::Time(1.0),
             known: None,
+            own: Vec::new(),
         }
     }
 }
@@ -123,6 +127,20 @@ impl<K: Kind> Change<K> {
         if !other.noise.spread.is_constantly_zero() {
             both.spread_along = other.spread_along;
         }
+        let also = both.own.iter_mut().zip(&other.own);
+        also.for_each(|(mine, theirs)| *mine = mine.and(theirs));
+        let further = other.own.iter().skip(both.own.len()).cloned();
+        both.own.extend(further);
         both
+    }
+
+    /// What is changed of one of several events: what is of all, and its own.
+    #[must_use]
+    pub fn of_event(&self, index: usize) -> Self {
+        let all = Self { own: Vec::new(), ..self.clone() };
+        match self.own.get(index) {
+            Some(own) => all.and(own),
+            None => all,
+        }
     }
 }

@@ -23,7 +23,9 @@ pub(super) struct Arguments {
     #[command(flatten)]
     subject: Subject,
     /// A model, "friction, noise", such as "voellmy, ar(1)"; give it twice or
-    /// more; the first is the one the others are compared with
+    /// more; the first is the one the others are compared with. The event's
+    /// mechanisms stay, unless a third part names others, or none:
+    /// "voellmy, iid, friction-patch + surge"
     #[arg(long = "model", value_name = "MODEL", required = true)]
     models: Vec<String>,
     #[command(flatten)]
@@ -47,6 +49,7 @@ pub(super) struct Arguments {
 struct Compared {
     friction: String,
     noise: String,
+    mechanisms: Vec<String>,
     evidence: Evidence,
     loo: Loo,
     lfo: Option<Lfo>,
@@ -56,12 +59,16 @@ struct Compared {
 
 impl Compared {
     fn name(&self) -> String {
-        format!("{}, {}", self.friction, self.noise)
+        let own = format!("{}, {}", self.friction, self.noise);
+        match self.mechanisms.is_empty() {
+            true => own,
+            false => format!("{own}, {}", self.mechanisms.join(" + ")),
+        }
     }
 
     fn document(&self, first: &Self) -> serde_json::Value {
         let (factor, se) = log10_factor(self, first);
-        json!({
+        let mut document = json!({
             "friction": self.friction,
             "noise": self.noise,
             "log_evidence": {
@@ -72,7 +79,11 @@ impl Compared {
             "log10_bayes_factor": {"value": factor, "se": se},
             "simulations": self.simulations,
             "warnings": self.warnings,
-        })
+        });
+        if !self.mechanisms.is_empty() {
+            document["mechanisms"] = json!(self.mechanisms);
+        }
+        document
     }
 }
 
@@ -131,6 +142,7 @@ impl Arguments {
         Ok(Compared {
             friction: model.friction(),
             noise: model.noise(),
+            mechanisms: model.mechanisms(),
             evidence,
             loo,
             lfo,
@@ -141,17 +153,21 @@ impl Arguments {
 
     /// The model that an argument names.
     fn model(&self, text: &str, laws: &Laws) -> Result<Assembled> {
-        let (friction, noise) = text.split_once(',').ok_or_else(|| {
-            Error::input(format!(
+        let mut parts = text.splitn(3, ',');
+        let (Some(friction), Some(noise)) = (parts.next(), parts.next())
+        else {
+            return Err(Error::input(format!(
                 "--model {text:?}: expected a friction law and a noise with a \
                  comma between, such as \"voellmy, ar(1)\""
-            ))
-        })?;
+            )));
+        };
+        let mechanisms = parts.next().map(named);
         assemble(
             self.subject.load(laws)?,
             laws,
             Some(friction.trim().to_owned()),
             Some(noise.trim().to_owned()),
+            mechanisms,
         )
     }
 
@@ -212,6 +228,12 @@ impl Arguments {
             "models": models,
         })
     }
+}
+
+/// The mechanisms of a sum such as "friction-patch + surge", or of "none".
+fn named(sum: &str) -> Vec<String> {
+    let names = sum.split('+').map(|name| name.trim().to_owned());
+    names.filter(|name| name != "none").collect()
 }
 
 /// log10 of the Bayes factor of a model against another, with its error.

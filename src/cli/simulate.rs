@@ -80,7 +80,7 @@ impl Arguments {
             }
         }
         let missing = values.iter().position(Option::is_none);
-        if let Some(i) = missing.filter(|i| *i < model.friction_dimension()) {
+        if let Some(i) = missing.filter(|i| model.is_of_motion(*i)) {
             return Err(Error::input(format!(
                 "{} has a flat prior and no middle; give it with --set {}=..",
                 names[i], names[i]
@@ -119,12 +119,12 @@ fn document(
     states: &[State<Plain>],
     rest: Option<(f64, f64)>,
 ) -> serde_json::Value {
-    let laws = model.friction_dimension();
     let parameters: serde_json::Map<String, serde_json::Value> = model
         .priors()
         .zip(values)
-        .take(laws)
-        .map(|((name, _), value)| (name.to_owned(), json!(value)))
+        .enumerate()
+        .filter(|(i, _)| model.is_of_motion(*i))
+        .map(|(_, ((name, _), value))| (name.to_owned(), json!(value)))
         .collect();
     let column = |f: fn(&State<Plain>) -> f64| -> Vec<f64> {
         states.iter().map(f).collect()
@@ -152,12 +152,12 @@ fn tell(
     states: &[State<Plain>],
     rest: Option<(f64, f64)>,
 ) -> String {
-    let laws = model.friction_dimension();
     let set: Vec<String> = model
         .priors()
         .zip(values)
-        .take(laws)
-        .map(|((name, _), value)| format!("{name} = {value:.6}"))
+        .enumerate()
+        .filter(|(i, _)| model.is_of_motion(*i))
+        .map(|(_, ((name, _), value))| format!("{name} = {value:.6}"))
         .collect();
     let mut text = format!("{}: {}\n", model.friction(), set.join(", "));
     text.push_str(&format!(

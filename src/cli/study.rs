@@ -1,6 +1,7 @@
 //! From the command line to a model: the event, with what was changed of it.
 
 use super::Subject;
+use crate::discrepancy::mechanisms::find;
 use crate::error::{Error, Result};
 use crate::io::{self, EventFile};
 use crate::model::Assembled;
@@ -24,7 +25,7 @@ impl Subject {
         let friction = self.friction.clone();
         let noise = self.noise.clone();
         let priors = file.priors.clone();
-        let model = assemble(file, laws, friction, noise)?;
+        let model = assemble(file, laws, friction, noise, None)?;
         if own {
             model.check_priors(&priors).map_err(|e| e.within(place))?;
         }
@@ -32,12 +33,14 @@ impl Subject {
     }
 }
 
-/// A model of an event's own laws, or of others by name.
+/// A model of an event's own laws, noise and mechanisms, or of others by
+/// name.
 pub(super) fn assemble(
     file: EventFile,
     laws: &Laws,
     friction: Option<String>,
     noise: Option<String>,
+    mechanisms: Option<Vec<String>>,
 ) -> Result<Assembled> {
     let friction = match friction {
         Some(text) => laws.parse(&text).map_err(|e| e.within("--friction"))?,
@@ -51,6 +54,18 @@ pub(super) fn assemble(
     if file.event.recordings().next().is_none() {
         return Err(Error::input("the event has no recording").within(place));
     }
-    Assembled::new(file.event, friction, noise, &file.priors)
-        .map_err(|e| e.within(place))
+    let (labels, at) = match mechanisms {
+        Some(labels) => (labels, "--model".to_owned()),
+        None => (file.mechanisms, file.mechanisms_at),
+    };
+    let extent = file.event.extent();
+    let model = Assembled::new(file.event, friction, noise, &file.priors)
+        .map_err(|e| e.within(place))?;
+    let blocks = model.blocks();
+    labels
+        .iter()
+        .map(|label| find(label, &extent, &blocks))
+        .collect::<Result<Vec<_>>>()
+        .and_then(|found| model.with_mechanisms(found, &file.priors))
+        .map_err(|e| e.within(at))
 }

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::fit::{Fit, fit, spread};
-use crate::change::{Mechanism, Unknown};
+use crate::change::Mechanism;
 use crate::error::Result;
 use crate::infer::{Peaks, Progress, Ridge};
 use crate::model::{Posterior, Program, With};
@@ -77,7 +77,7 @@ fn single<P: Program>(
         .into_iter()
         .map(|(place, _)| [place, none.own().to_vec()].concat())
         .collect();
-    let ridges = vec![ridge(&unknowns, &[], none.own(), seed.child(1))];
+    let ridges = vec![ridge(mechanism, &[], none.own(), seed.child(1))];
     let backend = Peaks { starts: 4, from, ridges, ..Peaks::default() };
     fit(program, &[mechanism], &backend, seed.child(2))
 }
@@ -88,22 +88,24 @@ fn single<P: Program>(
 /// An amplitude that may have either sign follows from the rest, nearly as in
 /// linear regression: it is not among them.
 fn ridge(
-    unknowns: &[Unknown],
+    mechanism: &dyn Mechanism,
     before: &[f64],
     after: &[f64],
     seed: Seed,
 ) -> Ridge {
-    let signed = unknowns
+    let unknowns = mechanism.unknowns();
+    let (leading, others) = unknowns.split_at(mechanism.leading());
+    let signed = leading
         .first()
         .is_some_and(|u| matches!(u.prior, AnyPrior::Normal(..)));
     let free = usize::from(signed);
-    let held = before.len() + free..before.len() + unknowns.len();
-    let kept = &unknowns[free..];
-    let amplitude = vec![0.0; free];
+    let held = before.len() + free..before.len() + leading.len();
+    let kept = &leading[free..];
+    let (amplitude, others) = (vec![0.0; free], vec![0.0; others.len()]);
     let places = spread(kept, places(kept.len()), seed)
         .into_iter()
         .map(|(place, apart)| {
-            ([before, &amplitude, &place, after].concat(), apart)
+            ([before, &amplitude, &place, &others, after].concat(), apart)
         })
         .collect();
     Ridge { held, places }
@@ -128,7 +130,7 @@ fn ways(
     let anywhere =
         spread(&unknowns, climbs(unknowns.len()) / 2, seed.child(0));
     from.extend(anywhere.iter().map(|(place, _)| joined(place)));
-    (from, ridge(&unknowns, before, after, seed.child(1)))
+    (from, ridge(added.0, before, after, seed.child(1)))
 }
 
 /// Fits a pair: from the best of either, with the other anywhere; `None`

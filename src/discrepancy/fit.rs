@@ -92,7 +92,7 @@ pub(super) fn spread(
         .map(|i| {
             unknowns
                 .iter()
-                .zip(PRIMES)
+                .zip(PRIMES.into_iter().cycle())
                 .zip(&shifts)
                 .map(|((unknown, base), shift)| {
                     let p = (radical_inverse(i, base) + shift).fract();
@@ -113,7 +113,9 @@ fn place(prior: &AnyPrior, p: f64, step: f64) -> (f64, f64) {
     (on_line(prior, middle), 0.6 * (above - below))
 }
 
-const PRIMES: [u64; 12] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37];
+const PRIMES: [u64; 20] = [
+    2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71,
+];
 
 /// The digits of `i` in a base, mirrored at the point (Halton 1960).
 fn radical_inverse(mut i: u64, base: u64) -> f64 {

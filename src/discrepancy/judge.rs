@@ -94,17 +94,7 @@ fn judged(
 
 /// What tells a variant from the others of its name.
 pub(super) fn label(mechanism: &dyn Candidate) -> String {
-    use crate::physics::forces::Axis;
-    let along = mechanism.coordinate().map(|axis| match axis {
-        Axis::Place => "distance",
-        Axis::Time => "time",
-        Axis::Speed => "speed",
-    });
-    let parts: Vec<&str> = along.into_iter().chain(mechanism.form()).collect();
-    if parts.is_empty() {
-        return mechanism.name().to_owned();
-    }
-    format!("{}({})", mechanism.name(), parts.join(", "))
+    mechanism.label()
 }
 
 fn unknown(forces: &[FreeForce], none: &Fit) -> Judged {

@@ -20,6 +20,7 @@ mod place;
 mod summary;
 #[cfg(test)]
 mod tests;
+mod together;
 mod words;
 
 pub use attribute::{Attribution, attribute, pair};
@@ -33,4 +34,5 @@ pub use judge::Odds;
 pub use locate::{CELLS, FreeForce, locate};
 pub use page::page;
 pub use summary::summary;
+pub use together::{PerEvent, Pooled, Sharing, Together};
 pub use words::in_words;

@@ -175,7 +175,7 @@ impl<'d> Section<'d> {
     }
 
     /// "event.toml:7: flow.depth".
-    fn spot(&self, key: &str) -> String {
+    pub(super) fn spot(&self, key: &str) -> String {
         let document = self.document;
         let offset = self.entry(key).map_or(self.offset, |e| e.offset);
         let mut spot = place(document.path);

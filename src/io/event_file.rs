@@ -38,8 +38,11 @@ pub struct EventFile {
     /// Priors by the names of their parameters; whether the model has such
     /// parameters is not checked here.
     pub priors: BTreeMap<String, AnyPrior>,
-    /// Terms that a diagnosis added; empty in this version.
+    /// Mechanisms that a diagnosis added, by their labels; whether there are
+    /// such is not checked here.
     pub mechanisms: Vec<String>,
+    /// How a message about them begins: the file, the line and the key.
+    pub mechanisms_at: String,
     /// The event.toml, as the user gave it.
     pub path: PathBuf,
 }
@@ -122,9 +125,18 @@ pub fn parse_event<R: Read>(
         check_noise(model.noise.as_ref(), series.grid())
             .map_err(|error| model.section.about("noise", error))?;
     }
+    let mechanisms_at = model.section.spot("mechanisms");
     let Model { friction, noise, mechanisms, .. } = model;
     let path = path.to_owned();
-    Ok(EventFile { event, friction, noise, priors, mechanisms, path })
+    Ok(EventFile {
+        event,
+        friction,
+        noise,
+        priors,
+        mechanisms,
+        mechanisms_at,
+        path,
+    })
 }
 
 type Open<'o, R> = &'o dyn Fn(&str) -> Result<(R, PathBuf)>;
@@ -262,7 +274,8 @@ impl<'d> Model<'d> {
             .map_err(|error| section.about("friction", error))?;
         let noise = noise::parse(section.text("noise")?.unwrap_or("iid"))
             .map_err(|error| section.about("noise", error))?;
-        let mechanisms = read_mechanisms(&section)?;
+        let mechanisms = section.texts("mechanisms")?;
+        let mechanisms = mechanisms.into_iter().map(str::to_owned).collect();
         Ok(Self { section, friction, noise, mechanisms })
     }
 }
@@ -279,23 +292,6 @@ fn once_each(friction: LawSum) -> Result<LawSum> {
             "the sum \"{friction}\" has {name:?} twice; expected each law \
              once: drop one of them"
         ))),
-    }
-}
-
-/// The terms that a diagnosis added. This version has none to offer, and to
-/// fit the model without them would answer another question.
-fn read_mechanisms(model: &Section) -> Result<Vec<String>> {
-    let found = model.texts("mechanisms")?;
-    match found.first() {
-        None => Ok(Vec::new()),
-        Some(name) => Err(model.at(
-            "mechanisms",
-            format!(
-                "has {}; terms of a diagnosis are not in this version: drop \
-                 the key",
-                quoted(name)
-            ),
-        )),
     }
 }
 

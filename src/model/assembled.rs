@@ -4,27 +4,34 @@
 //! the command runs.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
 
 use super::number::Number;
 use super::program::Program;
 use super::run::{Label, Run};
 use crate::block::{Field, List};
+use crate::change::{Change, Mechanism};
 use crate::error::{Error, Outcome, Result, Stop};
 use crate::noise::{self, NoiseEntry, Spacing};
 use crate::observe::{Event, Quantity};
 use crate::physics::friction::LawSum;
-use crate::physics::{Rest, State, rest, sample};
+use crate::physics::{Rest, State};
 use crate::prior::AnyPrior;
 use crate::scalar::{Plain, Real};
 
-/// One event under a sum of named laws with a named noise.
+/// One event under a sum of named laws with a named noise, and under the
+/// changes of mechanisms where there are some.
 #[derive(Debug)]
 pub struct Assembled {
     event: Event,
     friction: LawSum,
     noise: Box<dyn NoiseEntry>,
+    /// Those of the laws, of the noise, and of the mechanisms.
     unknowns: Vec<Unknown>,
     laws: usize,
+    /// Each with how many parameters it has.
+    mechanisms: Vec<(Arc<dyn Mechanism>, usize)>,
 }
 
 /// A parameter with its prior.
@@ -67,7 +74,47 @@ impl Assembled {
         }
         check_uneven(&event, noise.as_ref(), &fields, &unknowns)?;
         let laws = friction.dimension();
-        Ok(Self { event, friction, noise, unknowns, laws })
+        let mechanisms = Vec::new();
+        Ok(Self { event, friction, noise, unknowns, laws, mechanisms })
+    }
+
+    /// The same model with mechanisms. Their parameters come after its own,
+    /// each named `mechanism.parameter`; priors are looked for by that name.
+    ///
+    /// # Errors
+    /// Two mechanisms of one name, whose parameters would have the same.
+    pub fn with_mechanisms(
+        mut self,
+        mechanisms: Vec<Box<dyn Mechanism>>,
+        priors: &BTreeMap<String, AnyPrior>,
+    ) -> Result<Self> {
+        for mechanism in mechanisms {
+            let name = mechanism.name();
+            if self.mechanisms.iter().any(|(m, _)| m.name() == name) {
+                return Err(Error::input(format!(
+                    "{name:?} is there twice; expected each mechanism once, \
+                     in one variant: drop one of them"
+                )));
+            }
+            let added = mechanism.unknowns();
+            self.mechanisms.push((Arc::from(mechanism), added.len()));
+            self.unknowns.extend(added.into_iter().map(|unknown| {
+                let name = format!("{name}.{}", unknown.name);
+                let prior = *priors.get(&name).unwrap_or(&unknown.prior);
+                Unknown { name, unit: unknown.unit.to_owned(), prior }
+            }));
+        }
+        Ok(self)
+    }
+
+    /// The same model with a label before the name of each parameter from
+    /// the `from`-th on, for use beside others.
+    #[must_use]
+    pub fn labelled(mut self, label: &str, from: usize) -> Self {
+        for unknown in self.unknowns.iter_mut().skip(from) {
+            unknown.name = format!("{label}.{}", unknown.name);
+        }
+        self
     }
 
     /// Refuses priors of parameters that the model does not have.
@@ -80,9 +127,10 @@ impl Assembled {
     ) -> Result<()> {
         let fields = fields(&self.friction, self.noise.as_ref());
         let known = |key: &str| {
-            fields.iter().any(|(full, own, field)| {
-                key == full || key == own || key == field.name
-            })
+            self.unknowns.iter().any(|unknown| unknown.name == key)
+                || fields
+                    .iter()
+                    .any(|(_, own, field)| key == own || key == field.name)
         };
         match priors.keys().find(|key| !known(key)) {
             None => Ok(()),
@@ -110,6 +158,7 @@ impl Assembled {
             noise: noise::parse(&self.noise.name())?,
             unknowns: self.unknowns.clone(),
             laws: self.laws,
+            mechanisms: self.mechanisms.clone(),
         })
     }
 
@@ -128,12 +177,37 @@ impl Assembled {
         self.noise.name()
     }
 
+    /// The labels of its mechanisms.
+    pub fn mechanisms(&self) -> Vec<String> {
+        self.mechanisms.iter().map(|(m, _)| m.label()).collect()
+    }
+
+    /// The names of its laws and of its noise, without arguments.
+    pub fn blocks(&self) -> Vec<String> {
+        let laws = self.friction.terms().iter().map(|law| law.name());
+        let noise = self.noise.name();
+        let noise = noise.split('(').next().unwrap_or_default();
+        laws.chain([noise]).map(str::to_owned).collect()
+    }
+
+    /// Whether the parameter of this index says how the mass moves, and not
+    /// only how it is recorded.
+    pub fn is_of_motion(&self, index: usize) -> bool {
+        index < self.laws || index >= self.unknowns.len() - self.added()
+    }
+
+    /// How many parameters the mechanisms have; they come last.
+    fn added(&self) -> usize {
+        self.mechanisms.iter().map(|(_, count)| count).sum()
+    }
+
     /// How many of the parameters are the friction law's; they come first.
     pub fn friction_dimension(&self) -> usize {
         self.laws
     }
 
-    /// The motion at increasing times \[s\], parameters as named.
+    /// The motion at increasing times of the recording's clock \[s\],
+    /// parameters as named.
     ///
     /// # Errors
     /// [`Stop::Reject`] where the law has no flow with these values.
@@ -144,20 +218,50 @@ impl Assembled {
     ) -> Result<Vec<State<Plain>>, Stop> {
         let values = self.law_values(natural);
         let law = self.friction.with(&values);
+        let change = self.change_with(natural)?;
         let mut states = Vec::with_capacity(times.len());
-        let (path, release) = (self.event.path(), self.event.release());
-        sample(&path, &law, release, times, false, |s| states.push(s))?;
+        self.event.motion(&law, &change, times, |s| states.push(s))?;
         Ok(states)
     }
 
-    /// Where and when the mass comes to rest; `None` if it never does.
+    /// Where the mass comes to rest, and when by the recording's clock;
+    /// `None` if it never does.
     ///
     /// # Errors
     /// [`Stop::Reject`] where the law has no flow with these values.
     pub fn rest(&self, natural: &[f64]) -> Result<Option<Rest<Plain>>, Stop> {
         let values = self.law_values(natural);
         let law = self.friction.with(&values);
-        rest(&self.event.path(), &law, self.event.release())
+        let change = self.change_with(natural)?;
+        let rest = self.event.rest(&law, Some(&change))?;
+        let shown = |r: Rest<Plain>| Rest { time: r.time + change.clock, ..r };
+        Ok(rest.map(shown))
+    }
+
+    /// The change that the mechanisms make with values as named.
+    fn change_with(&self, natural: &[f64]) -> Result<Change<Plain>, Stop> {
+        let own = self.unknowns.len() - self.added();
+        let amounts = natural.get(own..).unwrap_or_default();
+        if amounts.len() < self.added() {
+            return Err(Stop::Fail(Error::inference(format!(
+                "{} values for {} parameters",
+                natural.len(),
+                self.unknowns.len()
+            ))));
+        }
+        let amounts: Vec<_> = amounts.iter().map(|&x| Real::new(x)).collect();
+        Ok(self.change(&amounts))
+    }
+
+    fn change<K: Number>(&self, amounts: &[Real<K>]) -> Change<K> {
+        let mut rest = amounts;
+        let mut change = Change::default();
+        for (mechanism, count) in &self.mechanisms {
+            let (values, others) = rest.split_at(*count);
+            change = change.and(&K::change(mechanism.as_ref(), values));
+            rest = others;
+        }
+        change
     }
 
     fn law_values(&self, natural: &[f64]) -> List<Real<Plain>> {
@@ -170,14 +274,58 @@ impl Assembled {
     }
 }
 
-impl Program for Assembled {
-    fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
-        let mut values = List::<Real<K>>::new();
-        for unknown in &self.unknowns {
-            let label = Label::new(&unknown.name, &unknown.unit);
-            values.push(run.scalar(label, unknown.prior)?);
+impl Assembled {
+    /// Asks for the friction law's parameters.
+    ///
+    /// # Errors
+    /// [`Stop::Reject`] where one lies outside its prior.
+    pub fn ask_laws<K: Number>(
+        &self,
+        run: &mut Run<'_, K>,
+    ) -> Result<List<Real<K>>, Stop> {
+        self.ask(run, 0..self.laws)
+    }
+
+    /// Asks for all other parameters and scores the recordings, the law's
+    /// parameters being `laws`.
+    ///
+    /// # Errors
+    /// As in [`Program::run`].
+    pub fn score<K: Number>(
+        &self,
+        run: &mut Run<'_, K>,
+        laws: &[Real<K>],
+    ) -> Outcome {
+        let own = self.unknowns.len() - self.added();
+        let errors = self.ask(run, self.laws..own)?;
+        if self.mechanisms.is_empty() {
+            return self.observe(run, laws, &errors);
         }
-        let (laws, errors) = values.split_at(self.laws);
+        let amounts = self.ask(run, own..self.unknowns.len())?;
+        let change = self.change(&amounts);
+        run.under(&change, |run| self.observe(run, laws, &errors))
+    }
+
+    fn ask<K: Number>(
+        &self,
+        run: &mut Run<'_, K>,
+        which: Range<usize>,
+    ) -> Result<List<Real<K>>, Stop> {
+        let unknowns = self.unknowns[which].iter();
+        unknowns
+            .map(|unknown| {
+                let label = Label::new(&unknown.name, &unknown.unit);
+                run.scalar(label, unknown.prior)
+            })
+            .collect()
+    }
+
+    fn observe<K: Number>(
+        &self,
+        run: &mut Run<'_, K>,
+        laws: &[Real<K>],
+        errors: &[Real<K>],
+    ) -> Outcome {
         let friction = run.declare(self.friction.with(laws));
         let flow = self.event.slide(&friction)?;
         let mut outcome = Ok(());
@@ -187,6 +335,13 @@ impl Program for Assembled {
             });
         })?;
         outcome
+    }
+}
+
+impl Program for Assembled {
+    fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
+        let laws = self.ask_laws(run)?;
+        self.score(run, &laws)
     }
 }
 

@@ -132,6 +132,28 @@ impl<'r, K: Kind> Run<'r, K> {
         body: impl FnOnce(&mut Run<'_, K>) -> Outcome,
     ) -> Outcome {
         let both = self.change.map(|outer| outer.and(change));
+        self.changed_to(Some(both.as_ref().unwrap_or(change)), body)
+    }
+
+    /// Runs the body of one of several events: of the change that this run
+    /// is under, it sees what is of all events and what is its own.
+    ///
+    /// # Errors
+    /// Those of the body.
+    pub fn of_event(
+        &mut self,
+        index: usize,
+        body: impl FnOnce(&mut Run<'_, K>) -> Outcome,
+    ) -> Outcome {
+        let own = self.change.map(|change| change.of_event(index));
+        self.changed_to(own.as_ref(), body)
+    }
+
+    fn changed_to(
+        &mut self,
+        change: Option<&Change<K>>,
+        body: impl FnOnce(&mut Run<'_, K>) -> Outcome,
+    ) -> Outcome {
         let mut inner = Run {
             context: self.context,
             source: self.source.reborrow(),
@@ -140,7 +162,7 @@ impl<'r, K: Kind> Run<'r, K> {
             log_jacobian: self.log_jacobian,
             log_likelihood: self.log_likelihood,
             listener: self.listener.as_mut().map(|l| &mut **l as _),
-            change: Some(both.as_ref().unwrap_or(change)),
+            change,
         };
         let outcome = body(&mut inner);
         self.position = inner.position;

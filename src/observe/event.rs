@@ -270,6 +270,24 @@ impl Event {
         })
     }
 
+    /// The motion at increasing times of the recording's clock \[s\], under
+    /// a change of it.
+    pub(crate) fn motion<K: Kind, L: Friction<K>>(
+        &self,
+        law: &L,
+        change: &Change<K>,
+        times: &[f64],
+        visit: impl FnMut(State<K>),
+    ) -> Result<(), Stop> {
+        let path = self.path();
+        if !change.moves() {
+            return sample(&path, law, self.release(), times, false, visit);
+        }
+        let moments = times.iter().map(|&t| t - change.clock);
+        let release = self.release_changed(change);
+        sample_changed(&path, law, &change.forces, release, moments, visit)
+    }
+
     /// The release under a change.
     fn release_changed<K: Kind>(&self, change: &Change<K>) -> Release<K> {
         let Release { distance, speed } = self.release::<K>();
@@ -281,7 +299,7 @@ impl Event {
 
     /// Where and when the mass comes to rest under a friction law and a
     /// change; `None` if it never does.
-    pub(super) fn rest<K: Kind, L: Friction<K>>(
+    pub(crate) fn rest<K: Kind, L: Friction<K>>(
         &self,
         law: &L,
         change: Option<&Change<K>>,

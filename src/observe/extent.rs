@@ -37,13 +37,7 @@ impl Event {
         let times = series.times();
         let averages =
             series.quantity() != Quantity::Position && series.window() == 0.0;
-        let speeds = match series.quantity() {
-            Quantity::Velocity => series.values().to_vec(),
-            Quantity::Position => rates(times, series.values()),
-            Quantity::Acceleration => {
-                sums(self.release_speed(), times, series.values())
-            }
-        };
+        let speeds = self.speeds();
         let mut extent =
             self.extent_of(&speeds, series.grid().step(), averages);
         extent.duration = times.last().copied().unwrap_or(1.0).max(1e-3);
@@ -56,16 +50,26 @@ impl Event {
         extent
     }
 
+    /// The speeds that its first recording shows \[m/s\].
+    fn speeds(&self) -> Vec<f64> {
+        let Some(series) = self.recordings().next() else { return Vec::new() };
+        let times = series.times();
+        match series.quantity() {
+            Quantity::Velocity => series.values().to_vec(),
+            Quantity::Position => rates(times, series.values()),
+            Quantity::Acceleration => {
+                sums(self.release_speed(), times, series.values())
+            }
+        }
+    }
+
     fn extent_of(&self, speeds: &[f64], step: f64, averages: bool) -> Extent {
-        let mut sorted = speeds.to_vec();
-        sorted.sort_by(f64::total_cmp);
-        let quartile = sorted.get(sorted.len() * 3 / 4).copied();
         let pieces = self.track().pieces();
         Extent {
             begin: self.track().origin() + self.start(),
             run: 1.0,
             duration: 1.0,
-            speed: quartile.unwrap_or(1.0).max(0.1),
+            speed: upper_quartile(speeds.to_vec()),
             step,
             behind: self.start(),
             start_speed: self.release_speed(),
@@ -83,6 +87,51 @@ impl Event {
             .filter(|p| p.start + p.length > from && p.start < to)
             .any(|p| p.curvature.abs() > 1e-6)
     }
+}
+
+impl Extent {
+    /// The extent of several events: from the least place to the greatest,
+    /// as long as the longest lasts.
+    pub fn of_all<'e>(events: impl Iterator<Item = &'e Event>) -> Self {
+        let mut speeds = Vec::new();
+        let extents = events.map(|event| {
+            speeds.extend(event.speeds());
+            event.extent()
+        });
+        let all = extents.reduce(|a, b| Self {
+            begin: a.begin.min(b.begin),
+            run: (a.begin + a.run).max(b.begin + b.run) - a.begin.min(b.begin),
+            duration: a.duration.max(b.duration),
+            speed: a.speed,
+            step: a.step.min(b.step),
+            behind: a.behind.min(b.behind),
+            carried: a.carried || b.carried,
+            bends: a.bends || b.bends,
+            averages: a.averages || b.averages,
+        });
+        let speed = upper_quartile(speeds);
+        match all {
+            Some(all) => Self { speed, ..all },
+            None => Self {
+                begin: 0.0,
+                run: 1.0,
+                duration: 1.0,
+                speed,
+                step: 1.0,
+                behind: 0.0,
+                carried: false,
+                bends: false,
+                averages: false,
+            },
+        }
+    }
+}
+
+/// The upper quartile \[m/s\], 0.1 at the least; 1 where there are none.
+fn upper_quartile(mut speeds: Vec<f64>) -> f64 {
+    speeds.sort_by(f64::total_cmp);
+    let quartile = speeds.get(speeds.len() * 3 / 4).copied();
+    quartile.unwrap_or(1.0).max(0.1)
 }
 
 /// Mean speeds between positions; the mass starts at 0.

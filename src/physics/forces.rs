@@ -30,6 +30,17 @@ pub enum Axis {
     Speed,
 }
 
+impl Axis {
+    /// Its name in the labels of mechanisms.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Place => "distance",
+            Self::Time => "time",
+            Self::Speed => "speed",
+        }
+    }
+}
+
 /// Where a term acts.
 #[derive(Debug, Clone, Copy)]
 pub enum Stretch<K: Kind> {

@@ -18,10 +18,15 @@ pub fn calibration_json(report: &CalibrationReport) -> Value {
         .iter()
         .map(|p| (p.name.clone(), parameter(p)))
         .collect();
+    let mut model =
+        json!({"friction": report.friction, "noise": report.noise});
+    if !report.mechanisms.is_empty() {
+        model["mechanisms"] = json!(report.mechanisms);
+    }
     json!({
         "schema": 1,
         "event": report.event,
-        "model": {"friction": report.friction, "noise": report.noise},
+        "model": model,
         "backend": report.backend,
         "seed": report.seed,
         "parameters": parameters,

@@ -32,6 +32,8 @@ pub struct CalibrationReport {
     pub friction: String,
     /// The error model, as in `event.toml`: `ar(1)`.
     pub noise: String,
+    /// The mechanisms added to the model, as in `event.toml`.
+    pub mechanisms: Vec<String>,
     /// The backend that ran: `mh`.
     pub backend: String,
     /// The seed of every random draw.
@@ -77,6 +79,16 @@ pub struct CalibrationReport {
     pub warnings: Vec<String>,
     /// Whether the recording was simulated, not measured.
     pub synthetic: bool,
+}
+
+impl CalibrationReport {
+    /// What stands behind "errors" where mechanisms were added.
+    fn terms(&self) -> String {
+        match self.mechanisms.is_empty() {
+            true => String::new(),
+            false => format!(" and {}", self.mechanisms.join(" and ")),
+        }
+    }
 }
 
 /// One unknown: its prior, its posterior and how well it was sampled.

@@ -58,7 +58,7 @@ fn heading(report: &CalibrationReport) -> Markup {
         p.sub {
             @if report.synthetic { span.synthetic { "synthetic data" } " " }
             "Calibration of " (plain(&report.friction)) " friction with "
-            (plain(&report.noise)) " errors on " (plain(&report.quantity))
+            (plain(&report.noise)) " errors" (plain(&report.terms())) " on " (plain(&report.quantity))
         }
     }
 }

@@ -54,10 +54,11 @@ fn subject(report: &CalibrationReport) -> String {
     };
     let origin = if report.synthetic { " (synthetic data)" } else { "" };
     format!(
-        "{} friction with {} errors was calibrated on {n} {values} of \
+        "{} friction with {} errors{} was calibrated on {n} {values} of \
          {}{span}{window}, from the event “{}”{origin}.",
         capital(&report.friction),
         report.noise,
+        report.terms(),
         report.quantity,
         report.event,
     )

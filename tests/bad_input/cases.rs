@@ -566,15 +566,6 @@ const MODEL: &[Edit] = &[
         &["event.toml:20: model.noise is \"i\\u{7}d\"", "control character"],
     ),
     (
-        "mechanisms",
-        "noise = \"iid\"",
-        "mechanisms = [\"friction-patch\"]",
-        &[
-            "event.toml:20: model.mechanisms has \"friction-patch\"",
-            "not in this version",
-        ],
-    ),
-    (
         "mechanisms-a-text",
         "noise = \"iid\"",
         "mechanisms = \"surge\"",

@@ -1,6 +1,6 @@
 //! Dry friction that changes steadily with distance or time.
 
-use super::{FRICTION, Rate, Shape, everywhere, unknown};
+use super::{FRICTION, Rate, Shape, everywhere, unknown, variant};
 use crate::change::{Candidate, Change, Family, Missing, Unknown};
 use crate::observe::Extent;
 use crate::physics::forces::{Axis, Range};
@@ -31,6 +31,10 @@ impl FrictionHardening {
 impl Candidate for FrictionHardening {
     fn name(&self) -> &'static str {
         "friction-hardening"
+    }
+
+    fn label(&self) -> String {
+        variant(self)
     }
 
     fn family(&self) -> Family {

@@ -1,6 +1,6 @@
 //! Dry friction that differs beyond a place or after a time.
 
-use super::{FRICTION, Rate, between, unknown};
+use super::{FRICTION, Rate, between, unknown, variant};
 use crate::change::{Candidate, Change, Family, Missing, Reach, Unknown};
 use crate::observe::Extent;
 use crate::physics::forces::Axis;
@@ -19,6 +19,10 @@ pub struct FrictionStep {
 impl Candidate for FrictionStep {
     fn name(&self) -> &'static str {
         "friction-step"
+    }
+
+    fn label(&self) -> String {
+        variant(self)
     }
 
     fn family(&self) -> Family {

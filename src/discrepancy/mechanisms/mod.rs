@@ -42,7 +42,8 @@ pub use velocity_scale::VelocityScale;
 pub use velocity_weakening::VelocityWeakening;
 pub use viscous_drag::ViscousDrag;
 
-use crate::change::{Change, Mechanism, Unknown};
+use crate::change::{Candidate, Change, Mechanism, Unknown};
+use crate::error::{Error, Result};
 use crate::observe::Extent;
 use crate::physics::Rate;
 use crate::physics::forces::{Axis, STEPS, Shape, Stretch, Term};
@@ -109,9 +110,61 @@ pub fn catalogue(
             all.push(Box::new(AveragingWindow { extent, begins }));
         }
     }
-    let held = |name: &str| blocks.iter().any(|block| block == name);
-    all.retain(|m| !m.contained_in().iter().any(|name| held(name)));
+    all.retain(|m| !m.contained_in().iter().any(|name| held(blocks, name)));
     all
+}
+
+/// The mechanism that a label means; a name that has several variants means
+/// the first of them.
+///
+/// # Errors
+/// A label of none, or of one that does not apply here; the message lists
+/// those that do.
+pub fn find(
+    label: &str,
+    extent: &Extent,
+    blocks: &[String],
+) -> Result<Box<dyn Mechanism>> {
+    let wanted = without_spaces(label);
+    let is_it = |m: &dyn Mechanism| {
+        wanted == m.name() || wanted == without_spaces(&m.label())
+    };
+    let mut here = catalogue(extent, blocks);
+    if let Some(i) = here.iter().position(|m| is_it(m.as_ref())) {
+        return Ok(here.swap_remove(i));
+    }
+    let labels: Vec<String> = here.iter().map(|m| m.label()).collect();
+    let labels = labels.join(", ");
+    let everything =
+        Extent { carried: true, bends: true, averages: true, ..*extent };
+    let elsewhere = catalogue(&everything, &[]);
+    let known = elsewhere.into_iter().find(|m| is_it(m.as_ref()));
+    let why = match known {
+        None => "is no mechanism",
+        Some(m) if m.contained_in().iter().any(|n| held(blocks, n)) => {
+            "is a term that the model's laws or noise already have"
+        }
+        Some(_) => "has nothing to act on in this event",
+    };
+    Err(Error::input(format!(
+        "{label:?} {why}; expected one of {labels}: take one of them, or \
+         drop it"
+    )))
+}
+
+fn without_spaces(text: &str) -> String {
+    text.chars().filter(|c| !c.is_whitespace()).collect()
+}
+
+fn held(blocks: &[String], name: &str) -> bool {
+    blocks.iter().any(|block| block == name)
+}
+
+/// A name with what tells the variant from the others that share it.
+fn variant(mechanism: &impl Candidate) -> String {
+    let along = mechanism.coordinate().map(Axis::name);
+    let parts: Vec<&str> = along.into_iter().chain(mechanism.form()).collect();
+    format!("{}({})", mechanism.name(), parts.join(", "))
 }
 
 fn unknown(name: &str, unit: &'static str, prior: AnyPrior) -> Unknown {

@@ -1,6 +1,6 @@
 //! Errors that are larger in one part of the recording than in another.
 
-use super::unknown;
+use super::{unknown, variant};
 use crate::change::{Candidate, Change, Covariate, Family, Missing, Unknown};
 use crate::observe::Extent;
 use crate::physics::forces::Axis;
@@ -19,6 +19,10 @@ pub struct UnequalVariance {
 impl Candidate for UnequalVariance {
     fn name(&self) -> &'static str {
         "unequal-variance"
+    }
+
+    fn label(&self) -> String {
+        variant(self)
     }
 
     fn family(&self) -> Family {

@@ -79,8 +79,11 @@ pub fn table(report: &CalibrationReport, width: usize) -> String {
 fn title(report: &CalibrationReport) -> String {
     let origin = if report.synthetic { ", synthetic data" } else { "" };
     plain(&format!(
-        "{}: {} friction, {} errors{origin}",
-        report.event, report.friction, report.noise
+        "{}: {} friction, {} errors{}{origin}",
+        report.event,
+        report.friction,
+        report.noise,
+        report.terms()
     ))
 }
 

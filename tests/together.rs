@@ -1,0 +1,218 @@
+//! Models with mechanisms that came from an event file, and several events
+//! together.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by it")]
+
+use std::collections::BTreeMap;
+
+use couloir::change::Family;
+use couloir::discrepancy::mechanisms::{FrictionPatch, find};
+use couloir::discrepancy::{Fit, Sharing, Together, fit};
+use couloir::draws::summarise;
+use couloir::infer::Peaks;
+use couloir::model::{Assembled, Point, Posterior, Program, With};
+use couloir::noise;
+use couloir::physics::Track;
+use couloir::physics::friction::Laws;
+use couloir::prior::AnyPrior;
+use couloir::{Event, Seed, Series};
+use rand_distr::{Distribution, StandardNormal};
+
+/// A slope with a patch of higher friction between 60 and 110 m of the common
+/// axis, released at some place on it; 50 values with errors of 0.3 m/s.
+fn slide(name: &str, origin: f64, seed: u64) -> Assembled {
+    let times: Vec<f64> = (1..=50).map(|i| 0.2 * f64::from(i)).collect();
+    let track = Track::incline(28.0, 900.0).unwrap().with_origin(origin);
+    let blank = Series::velocity(times.clone(), vec![3.0; 50]).unwrap();
+    let event = |series| {
+        Event::on(track.clone()).named(name).velocity(series).build().unwrap()
+    };
+    let patch = |model: Assembled| {
+        let extent = model.event().extent();
+        let found = find("friction-patch", &extent, &[]).unwrap();
+        model.with_mechanisms(vec![found], &BTreeMap::new()).unwrap()
+    };
+    let truth = [0.25, 0.09, 0.15, 60.0, 50.0];
+    let states = patch(of(event(blank))).motion(&truth, &times).unwrap();
+    let mut rng = Seed::new(seed).rng();
+    let values = states
+        .iter()
+        .map(|s| {
+            let z: f64 = StandardNormal.sample(&mut rng);
+            s.speed.value() + 0.3 * z
+        })
+        .collect();
+    of(event(Series::velocity(times, values).unwrap()))
+}
+
+fn of(event: Event) -> Assembled {
+    let laws = Laws::default().parse("coulomb").unwrap();
+    let noise = noise::parse("iid").unwrap();
+    let mut priors = BTreeMap::new();
+    priors.insert("mu".into(), AnyPrior::parse("Gamma(9, 0.03)").unwrap());
+    let sigma2 = AnyPrior::parse("InverseGamma(3, 0.3)").unwrap();
+    priors.insert("sigma2".into(), sigma2);
+    Assembled::new(event, laws, noise, &priors).unwrap()
+}
+
+fn both() -> [Assembled; 2] {
+    [slide("upper 1", 0.0, 1), slide("lower 1", 40.0, 2)]
+}
+
+fn likelihood(program: &impl Program, values: &[f64]) -> f64 {
+    let posterior = Posterior::new(program).unwrap();
+    let density = posterior.density(Point::Natural(values)).unwrap();
+    assert_eq!(density.rejected, None);
+    density.log_likelihood
+}
+
+#[test]
+fn mechanisms_of_an_event_file_are_those_put_on_from_outside() {
+    let plain = slide("one", 0.0, 1);
+    let extent = plain.event().extent();
+    let patch = FrictionPatch { extent };
+    let outside = With::new(&plain, &[&patch]);
+    let found = find("friction-patch", &extent, &plain.blocks()).unwrap();
+    let key = "friction-patch.delta_mu".to_owned();
+    let prior = AnyPrior::parse("Normal(0.1, 0.2)").unwrap();
+    let priors = BTreeMap::from([(key, prior)]);
+    let inside =
+        slide("one", 0.0, 1).with_mechanisms(vec![found], &priors).unwrap();
+    inside.check_priors(&priors).unwrap();
+    assert_eq!(
+        inside.priors().nth(2).unwrap().1.to_string(),
+        prior.to_string()
+    );
+    let (mechanism, own) = ([0.14, 61.0, 47.0], [0.26, 0.1]);
+    let a = likelihood(&outside, &[&mechanism[..], &own].concat());
+    let b = likelihood(&inside, &[&own[..], &mechanism].concat());
+    assert_eq!(a, b);
+    let zero = likelihood(&inside, &[0.26, 0.1, 0.0, 61.0, 47.0]);
+    assert!((zero - likelihood(&plain, &own)).abs() < 1e-9);
+    let part = inside.first(20).unwrap();
+    let all = [&own[..], &mechanism].concat();
+    let known = likelihood(&part, &all);
+    assert!(known.is_finite() && known != b);
+    assert!(inside.rest(&all).unwrap().is_none());
+}
+
+#[test]
+fn with_nothing_shared_the_log_evidence_adds_up() {
+    let peaks = Peaks::default();
+    let of = |model: &Assembled, seed| -> Fit {
+        fit(model, &[], &peaks, Seed::new(seed)).unwrap()
+    };
+    let [a, b] = both();
+    let sum = of(&a, 1).log_evidence + of(&b, 2).log_evidence;
+    let exact = likelihood(&a, &[0.3, 0.2]) + likelihood(&b, &[0.28, 0.1]);
+    let together = Together::new(both().into(), false).unwrap();
+    assert_eq!(together.labels(), ["upper", "lower"]);
+    let joint = likelihood(&together, &[0.3, 0.2, 0.28, 0.1]);
+    assert!((joint - exact).abs() < 1e-9);
+    let joint = fit(&together, &[], &peaks, Seed::new(3)).unwrap();
+    assert_eq!(joint.draws.names()[0], "upper.mu");
+    let apart = (joint.log_evidence - sum).abs();
+    assert!(apart < 0.1, "{} {sum}", joint.log_evidence);
+    let shared = Together::new(both().into(), true).unwrap();
+    let posterior = Posterior::new(&shared).unwrap();
+    let names: Vec<_> =
+        posterior.parameters().iter().map(|p| p.name.clone()).collect();
+    assert_eq!(names, ["mu", "upper.sigma2", "lower.sigma2"]);
+}
+
+/// The width of the 90 % interval of the patch's delta_mu, and its middle.
+fn width(
+    program: &impl Program,
+    mechanism: &dyn couloir::change::Mechanism,
+) -> (f64, f64) {
+    let from = vec![vec![0.0; 0]; 0];
+    let peaks = Peaks { starts: 200, from, ..Peaks::default() };
+    let found = fit(program, &[mechanism], &peaks, Seed::new(4)).unwrap();
+    let delta = &summarise(&found.draws)[0];
+    assert_eq!(delta.name, "friction-patch.delta_mu");
+    (delta.q95 - delta.q05, delta.q50)
+}
+
+#[test]
+fn a_shared_patch_is_known_better_from_two() {
+    let [a, b] = both();
+    let patch = |model: &Assembled| {
+        find("friction-patch", &model.event().extent(), &[]).unwrap()
+    };
+    let (one, _) = width(&a, patch(&a).as_ref());
+    let (other, _) = width(&b, patch(&b).as_ref());
+    let together = Together::new(both().into(), false).unwrap();
+    let all = together.catalogue(Sharing::Shared);
+    let shared = all.iter().find(|m| m.name() == "friction-patch").unwrap();
+    let (joint, middle) = width(&together, shared.as_ref());
+    assert!(joint < one.min(other), "{one} {other} {joint}");
+    assert!((middle - 0.15).abs() < 0.05, "{middle}");
+}
+
+#[test]
+fn each_event_sees_its_own_change() {
+    let together = Together::new(both().into(), false).unwrap();
+    let extent = together.extent();
+    let [a, b] = both().map(|model| model.event().extent());
+    assert_eq!(extent.begin, a.begin.min(b.begin));
+    let end = (a.begin + a.run).max(b.begin + b.run);
+    assert!((extent.begin + extent.run - end).abs() < 1e-9);
+    let all = together.catalogue(Sharing::Shared);
+    let clock = all.iter().find(|m| m.name() == "clock-offset").unwrap();
+    let names: Vec<_> = clock.unknowns().into_iter().map(|u| u.name).collect();
+    assert_eq!(names, ["upper.ahead", "lower.ahead"]);
+    let own = [0.3, 0.2, 0.28, 0.1];
+    let with = With::new(&together, &[clock.as_ref()]);
+    let found = likelihood(&with, &[&[0.4, -0.3], &own[..]].concat());
+    let single = |model: &Assembled, values: [f64; 3]| {
+        let extent = model.event().extent();
+        let clock = find("clock-offset", &extent, &[]).unwrap();
+        likelihood(&With::new(model, &[clock.as_ref()]), &values)
+    };
+    let [a, b] = both();
+    let sum = single(&a, [0.4, 0.3, 0.2]) + single(&b, [-0.3, 0.28, 0.1]);
+    assert!((found - sum).abs() < 1e-9, "{found} {sum}");
+}
+
+#[test]
+fn a_pooled_amplitude_is_the_common_one_where_nothing_spreads() {
+    let together = Together::new(both().into(), true).unwrap();
+    let own = [0.28, 0.1, 0.1];
+    let pooled = together.catalogue(Sharing::Pooled);
+    let shared = together.catalogue(Sharing::Shared);
+    for (pooled, shared) in pooled.iter().zip(&shared) {
+        assert_eq!(pooled.label(), shared.label());
+        let middle = |m: &dyn couloir::change::Mechanism| -> Vec<f64> {
+            let unknowns = m.unknowns();
+            unknowns.iter().map(|u| u.prior.quantile(0.6).unwrap()).collect()
+        };
+        let common = middle(shared.as_ref());
+        let a = With::new(&together, &[shared.as_ref()]);
+        let a = likelihood(&a, &[&common, &own[..]].concat());
+        let mut values = common.clone();
+        if pooled.family() == Family::Physics {
+            values.extend([0.0, 0.7, -0.4]);
+        }
+        let with = With::new(&together, &[pooled.as_ref()]);
+        let b = likelihood(&with, &[&values, &own[..]].concat());
+        assert!((a - b).abs() < 1e-9, "{}: {a} {b}", pooled.label());
+        if pooled.family() == Family::Physics {
+            let last = values.len() - 3;
+            values[last] = 0.05;
+            let c = likelihood(&with, &[&values, &own[..]].concat());
+            assert!((c - b).abs() > 1e-6, "{}", pooled.label());
+        }
+    }
+}
+
+#[test]
+fn events_that_cannot_share_a_law_are_refused() {
+    let laws = Laws::default().parse("voellmy").unwrap();
+    let noise = noise::parse("iid").unwrap();
+    let event = slide("other", 0.0, 3).event().clone();
+    let other = Assembled::new(event, laws, noise, &BTreeMap::new()).unwrap();
+    let [a, _] = both();
+    let error = Together::new(vec![a, other], true).unwrap_err();
+    assert!(error.is_input() && error.to_string().contains("voellmy"));
+    assert!(Together::new(Vec::new(), false).unwrap_err().is_input());
+}
