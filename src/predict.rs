@@ -50,15 +50,36 @@ pub fn posterior_predictive(
     times: &[f64],
     seed: Seed,
 ) -> Result<Bands> {
-    let rows = draws.thinned(draws_for(times.len()));
-    let pairs = rows
+    let all = predictive_of_all(posterior, draws, &[times], seed)?;
+    all.into_iter()
+        .next()
+        .ok_or_else(|| Error::inference("the model predicts no series"))
+}
+
+/// The same of each of the model's series, whose times \[s\] are given.
+///
+/// # Errors
+/// As [`posterior_predictive`].
+pub fn predictive_of_all(
+    posterior: &Posterior<'_>,
+    draws: &Draws,
+    times: &[&[f64]],
+    seed: Seed,
+) -> Result<Vec<Bands>> {
+    let length = times.iter().map(|t| t.len()).sum();
+    let rows = draws.thinned(draws_for(length));
+    let sets = rows
         .par_iter()
         .enumerate()
         .map(|(i, row)| {
             replicate(posterior, || Point::Natural(row), seed.child(i as u64))
         })
         .collect::<Result<Vec<_>>>()?;
-    bands(&pairs.into_iter().flatten().collect::<Vec<_>>(), times)
+    let of = |k: usize| -> Vec<Pair> {
+        sets.iter().flatten().filter_map(|s| s.get(k).cloned()).collect()
+    };
+    let series = times.iter().enumerate();
+    series.map(|(k, times)| bands(&of(k), times)).collect()
 }
 
 /// The same before any recording is seen: `count` draws from the prior.
@@ -82,19 +103,21 @@ pub fn prior_predictive(
                 return Ok(None);
             }
             let row = found.natural;
-            replicate(posterior, || Point::Natural(&row), seed.child(i))
+            let all =
+                replicate(posterior, || Point::Natural(&row), seed.child(i))?;
+            Ok(all.and_then(|all| all.into_iter().next()))
         })
         .collect::<Result<Vec<_>>>()?;
     bands(&pairs.into_iter().flatten().collect::<Vec<_>>(), times)
 }
 
-/// The flow at a point and one replicate of its recording; `None` where the
+/// The flow at a point and one replicate of each recording; `None` where the
 /// model rejects the point.
 fn replicate<'a>(
     posterior: &Posterior<'_>,
     point: impl Fn() -> Point<'a>,
     seed: Seed,
-) -> Result<Option<Pair>> {
+) -> Result<Option<Vec<Pair>>> {
     let model: &dyn Model = posterior.model();
     let mut collector = Collector::default();
     let density = model.evaluate(point(), Some(&mut collector))?;
@@ -104,9 +127,8 @@ fn replicate<'a>(
     let mut rng = seed.child(1).rng();
     let mut replicates = Replicates::new(&mut rng);
     model.evaluate(point(), Some(&mut replicates))?;
-    let flow = collector.collected.predictions.into_iter().next();
-    let full = replicates.series.into_iter().next();
-    Ok(flow.zip(full))
+    let flows = collector.collected.predictions.into_iter();
+    Ok(Some(flows.zip(replicates.series).collect()))
 }
 
 fn bands(pairs: &[Pair], times: &[f64]) -> Result<Bands> {

@@ -40,9 +40,9 @@ pub struct Change<K: Kind> {
     pub noise: Alteration<K>,
     /// Along what a spread of the noise rises.
     pub spread_along: Covariate,
-    /// How many values of a series are known; those after them are not
-    /// scored.
-    pub known: Option<usize>,
+    /// The share of a series' values that is known; those after them are
+    /// not scored.
+    pub known: Option<f64>,
     /// What is changed of each of several events besides; empty where all
     /// are changed alike.
     pub own: Vec<Self>,

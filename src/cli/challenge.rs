@@ -13,7 +13,9 @@ use crate::challenge::{
     Answer, Case, Coordinate, Interval, Mix, PowerTable, cases,
     challenge_json, page, power_cases, power_page, run, words,
 };
-use crate::discrepancy::{Diagnosis, Options, diagnose};
+use crate::discrepancy::{
+    Diagnosis, Options, Sharing, Together, diagnose, diagnose_together,
+};
 use crate::error::{Error, Result};
 use crate::infer::Quiet;
 use crate::io::{parse_event, write_all};
@@ -30,6 +32,9 @@ pub(super) struct Arguments {
     /// Seed of every random draw
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// How many recordings, from different starts, share an effect: 1 or 2
+    #[arg(long, default_value_t = 1, value_parser = one_or_two)]
+    recordings: usize,
     /// Study instead what size of this mechanism is seen in what noise
     #[arg(long, value_name = "MECHANISM")]
     power: Option<String>,
@@ -54,8 +59,12 @@ impl Arguments {
         }
     }
 
+    fn mix(&self) -> Mix {
+        if self.recordings == 2 { Mix::Two } else { Mix::One }
+    }
+
     fn score(&self) -> Result<String> {
-        let all = cases(self.cases, self.seed, Mix::One)?;
+        let all = cases(self.cases, self.seed, self.mix())?;
         let told = Told::new();
         let seed = self.seed;
         let scored = run(&all, &|case| answer(case, seed), true, &told)?;
@@ -64,7 +73,7 @@ impl Arguments {
         if let Some(folder) = &self.out {
             let files = [
                 ("challenge.json", json.clone()),
-                ("challenge.html", page(&scored, Mix::One, self.seed)),
+                ("challenge.html", page(&scored, self.mix(), self.seed)),
             ];
             write_all(folder, &files)?;
         }
@@ -99,15 +108,31 @@ impl Arguments {
     }
 }
 
+fn one_or_two(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(n @ 1..=2) => Ok(n),
+        _ => Err("expected 1 or 2".into()),
+    }
+}
+
 /// What the diagnosis says of a case, from its recordings alone.
 fn answer(case: &Case, seed: u64) -> Result<Answer> {
-    let recording = case
+    let mut models = case
         .recordings
-        .first()
-        .ok_or_else(|| Error::input("a case without a recording"))?;
-    let model = model_of(&recording.files)?;
-    let options = Options::of(&model, seed);
-    let found = diagnose(&model, model.event(), &options, &Quiet)?;
+        .iter()
+        .map(|recording| model_of(&recording.files))
+        .collect::<Result<Vec<_>>>()?;
+    let found = if models.len() > 1 {
+        let together = Together::new(models, true)?;
+        let options = Options::of_all(&together, seed);
+        diagnose_together(&together, Sharing::Shared, &options, &Quiet)?
+    } else {
+        let model = models
+            .pop()
+            .ok_or_else(|| Error::input("a case without a recording"))?;
+        let options = Options::of(&model, seed);
+        diagnose(&model, model.event(), &options, &Quiet)?
+    };
     Ok(answer_of(&found))
 }
 
@@ -126,7 +151,7 @@ fn model_of(files: &[(&'static str, String)]) -> Result<Assembled> {
     let laws = Laws::default();
     let event = text("event.toml")?;
     let file = parse_event(&event, Path::new("event.toml"), open, &laws)?;
-    assemble(file, &laws, None, None)
+    assemble(file, &laws, None, None, None)
 }
 
 fn answer_of(found: &Diagnosis) -> Answer {

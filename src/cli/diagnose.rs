@@ -8,16 +8,21 @@ use clap::Args;
 use super::calibrate::pretty;
 use super::progress::Told;
 use super::{Output, Subject, width};
-use crate::discrepancy::{Odds, Options, diagnose, page, summary};
-use crate::error::Result;
+use crate::discrepancy::{
+    Diagnosis, Odds, Options, Sharing, Together, diagnose, diagnose_together,
+    page, summary,
+};
+use crate::error::{Error, Result};
 use crate::io::write_all;
+use crate::model::Assembled;
 use crate::physics::friction::Laws;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Event folders, or their event.toml; a passenger car coasting uphill,
-    /// a real recording, with Coulomb friction alone, where none is given
-    event: Option<PathBuf>,
+    /// Event folders, or their event.toml, several to be explained together;
+    /// a passenger car coasting uphill, a real recording, with Coulomb
+    /// friction alone, where none is given
+    events: Vec<PathBuf>,
     /// Friction law instead of the event's
     #[arg(long, value_name = "LAW")]
     friction: Option<String>,
@@ -28,6 +33,12 @@ pub(super) struct Arguments {
     /// friction-patch=3; `none` against all others together
     #[arg(long, value_name = "NAME=ODDS", value_parser = odds)]
     odds: Vec<(String, f64)>,
+    /// One friction law for all events, instead of one for each
+    #[arg(long)]
+    one_law: bool,
+    /// Let the amount of what is missing differ from event to event
+    #[arg(long)]
+    pooled: bool,
     /// Seed of every random draw
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -48,17 +59,12 @@ fn odds(text: &str) -> Result<(String, f64), String> {
 
 impl Arguments {
     pub(super) fn run(&self, laws: &Laws) -> Result<String> {
-        let alone = self.event.is_none().then(|| "coulomb".to_owned());
-        let subject = Subject {
-            event: self.event.clone(),
-            friction: self.friction.clone().or(alone),
-            noise: self.noise.clone(),
-        };
-        let model = subject.model(laws)?;
-        let mut options = Options::of(&model, self.seed);
-        options.odds = self.odds.iter().cloned().collect::<Odds>();
+        let mut models = Vec::new();
+        for event in self.subjects() {
+            models.push(event.model(laws)?);
+        }
         let told = Told::new();
-        let found = diagnose(&model, model.event(), &options, &told)?;
+        let found = self.diagnose(models, &told)?;
         drop(told);
         let json = pretty(&found.json());
         if let Some(folder) = &self.output.out {
@@ -79,5 +85,42 @@ impl Arguments {
             ));
         }
         Ok(text)
+    }
+
+    /// Each event with what the command line changes of it.
+    fn subjects(&self) -> Vec<Subject> {
+        let of = |event: Option<PathBuf>| Subject {
+            friction: self
+                .friction
+                .clone()
+                .or_else(|| event.is_none().then(|| "coulomb".to_owned())),
+            noise: self.noise.clone(),
+            event,
+        };
+        if self.events.is_empty() {
+            return vec![of(None)];
+        }
+        self.events.iter().cloned().map(Some).map(of).collect()
+    }
+
+    fn diagnose(
+        &self,
+        mut models: Vec<Assembled>,
+        told: &Told,
+    ) -> Result<Diagnosis> {
+        let odds = || self.odds.iter().cloned().collect::<Odds>();
+        if models.len() > 1 {
+            let together = Together::new(models, self.one_law)?;
+            let mut options = Options::of_all(&together, self.seed);
+            options.odds = odds();
+            let sharing =
+                if self.pooled { Sharing::Pooled } else { Sharing::Shared };
+            return diagnose_together(&together, sharing, &options, told);
+        }
+        let model =
+            models.pop().ok_or_else(|| Error::input("no event was given"))?;
+        let mut options = Options::of(&model, self.seed);
+        options.odds = odds();
+        diagnose(&model, model.event(), &options, told)
     }
 }

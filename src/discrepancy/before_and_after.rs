@@ -7,8 +7,8 @@ use crate::elpd::leave_one_out;
 use crate::error::{Error, Result};
 use crate::infer::{Backend, Peaks, Quiet, climb};
 use crate::model::{Point, Posterior, Program, With};
-use crate::observe::{Event, Quantity};
-use crate::predict::{Bands, posterior_predictive};
+use crate::observe::{Event, Quantity, Series};
+use crate::predict::{Bands, predictive_of_all};
 use crate::seed::Seed;
 
 /// A model to be shown: what is added, how it was fitted, and a seed.
@@ -27,7 +27,7 @@ impl Shown<'_> {
     }
 }
 
-/// The figures of one fitted model.
+/// The figures of one fitted model, over all recordings.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Figures {
     pub(super) rmse: f64,
@@ -35,45 +35,83 @@ pub(super) struct Figures {
     pub(super) heldout_rmse: f64,
     pub(super) coverage90: f64,
     pub(super) ljung_box_p: f64,
-    pub(super) innovations: Vec<f64>,
-    pub(super) bands: Bands,
-    /// Where the mass is at the recorded times, on the shared axis [m].
-    pub(super) places: Vec<f64>,
+    pub(super) innovations: Vec<Vec<f64>>,
+    /// Of each recording.
+    pub(super) bands: Vec<Bands>,
+    /// Where the mass is at the recorded times, on the shared axis [m], of
+    /// each recording.
+    pub(super) places: Vec<Vec<f64>>,
 }
 
 /// The share of the values that the held-out stretch is predicted from.
 const KNOWN: f64 = 0.7;
 
-/// The figures of a model on its event's first recording.
+/// The figures of a model on the recordings of its events.
 pub(super) fn show<P: Program>(
     program: &P,
-    event: &Event,
+    events: &[&Event],
     shown: &Shown<'_>,
 ) -> Result<Figures> {
-    let series = event
-        .recordings()
-        .next()
-        .ok_or_else(|| Error::input("the event has no recording"))?;
+    let recorded = recordings(events);
+    if recorded.is_empty() {
+        return Err(Error::input("the event has no recording"));
+    }
     let with = With::new(program, &shown.mechanisms);
     let posterior = Posterior::new(&with)?;
     let draws = &shown.fit.draws;
-    let seed = shown.first;
-    let bands = posterior_predictive(&posterior, draws, series.times(), seed)?;
+    let times: Vec<&[f64]> =
+        recorded.iter().map(|(_, series)| series.times()).collect();
+    let bands = predictive_of_all(&posterior, draws, &times, shown.first)?;
     let (_, found) = posterior.collect(Point::Line(&shown.fit.best))?;
-    let innovations = found.innovations.into_iter().next().unwrap_or_default();
-    let lags = (innovations.len() / 5).clamp(1, 10);
     let predicted = mean_prediction(&posterior, draws)?;
+    let values = |(_, series): &(&Event, &Series)| series.values().to_vec();
+    let values: Vec<Vec<f64>> = recorded.iter().map(values).collect();
+    let places = recorded.iter().zip(&predicted);
     Ok(Figures {
-        rmse: rmse(series.values(), &predicted),
+        rmse: rmse(&values.concat(), &predicted.concat()),
         elpd: leave_one_out(&posterior, draws).map_or(f64::NAN, |l| l.elpd),
-        heldout_rmse: held_out(program, shown, series.values())?,
-        coverage90: bands.coverage(series.values()),
-        ljung_box_p: draws::ljung_box(&innovations, lags, 0)
-            .map_or(f64::NAN, |test| test.p),
-        places: places(event, series.quantity(), series.times(), &predicted),
-        innovations,
+        heldout_rmse: held_out(program, shown, &values)?,
+        coverage90: coverage(&bands, &values),
+        ljung_box_p: uncorrelated(&found.innovations),
+        places: places
+            .map(|((event, series), p)| places_of(event, series, p))
+            .collect(),
+        innovations: found.innovations,
         bands,
     })
+}
+
+/// All series with their events, in the order in which models score them.
+pub(super) fn recordings<'e>(
+    events: &[&'e Event],
+) -> Vec<(&'e Event, &'e Series)> {
+    events
+        .iter()
+        .flat_map(|&event| event.recordings().map(move |s| (event, s)))
+        .collect()
+}
+
+/// The share of all values inside their bands.
+fn coverage(bands: &[Bands], values: &[Vec<f64>]) -> f64 {
+    let inside: f64 = bands
+        .iter()
+        .zip(values)
+        .map(|(band, values)| band.coverage(values) * values.len() as f64)
+        .sum();
+    inside / values.iter().map(Vec::len).sum::<usize>().max(1) as f64
+}
+
+/// The least p of no autocorrelation, for the number of series (Bonferroni).
+fn uncorrelated(innovations: &[Vec<f64>]) -> f64 {
+    let count = innovations.len() as f64;
+    innovations
+        .iter()
+        .filter_map(|series| {
+            let lags = (series.len() / 5).clamp(1, 10);
+            draws::ljung_box(series, lags, 0)
+        })
+        .map(|test| (test.p * count).min(1.0))
+        .fold(f64::NAN, f64::min)
 }
 
 /// Draws of all chains, thinned to a few hundred.
@@ -81,26 +119,31 @@ pub(super) fn rows_of(draws: &Draws) -> Vec<&[f64]> {
     draws.thinned(400)
 }
 
-/// The posterior mean of what is predicted for each value.
+/// The posterior mean of what is predicted for each value of each series.
 fn mean_prediction(
     posterior: &Posterior<'_>,
     draws: &Draws,
-) -> Result<Vec<f64>> {
-    let mut sum: Vec<f64> = Vec::new();
+) -> Result<Vec<Vec<f64>>> {
+    let mut sums: Vec<Vec<f64>> = Vec::new();
     let mut count = 0.0;
     for row in rows_of(draws) {
         let (density, found) = posterior.collect(Point::Natural(row))?;
-        let Some(predicted) = found.predictions.into_iter().next() else {
-            continue;
-        };
         if density.rejected.is_some() {
             continue;
         }
-        sum.resize(predicted.len(), 0.0);
-        sum.iter_mut().zip(predicted).for_each(|(s, p)| *s += p);
+        if sums.is_empty() {
+            sums = found.predictions;
+        } else {
+            for (sum, one) in sums.iter_mut().zip(found.predictions) {
+                sum.iter_mut().zip(one).for_each(|(s, p)| *s += p);
+            }
+        }
         count += 1.0;
     }
-    Ok(sum.into_iter().map(|s| s / count).collect())
+    for sum in &mut sums {
+        sum.iter_mut().for_each(|s| *s /= count);
+    }
+    Ok(sums)
 }
 
 fn rmse(values: &[f64], predicted: &[f64]) -> f64 {
@@ -113,57 +156,56 @@ fn rmse(values: &[f64], predicted: &[f64]) -> f64 {
 fn held_out<P: Program>(
     program: &P,
     shown: &Shown<'_>,
-    values: &[f64],
+    values: &[Vec<f64>],
 ) -> Result<f64> {
-    let known = ((KNOWN * values.len() as f64) as usize).max(1);
-    if known >= values.len() {
-        return Ok(f64::NAN);
-    }
-    let with = With::new(program, &shown.mechanisms).knowing(known);
+    let with = With::new(program, &shown.mechanisms).knowing(KNOWN);
     let posterior = Posterior::new(&with)?;
     let plain = With::new(program, &shown.mechanisms);
     let whole = Posterior::new(&plain)?;
-    if shown.rough {
+    let predicted = if shown.rough {
         let Some(peak) = climb(&posterior, &shown.fit.best)? else {
             return Ok(f64::NAN);
         };
-        let (_, found) = whole.collect(Point::Line(peak.line.as_slice()))?;
-        let predicted = found.predictions.into_iter().next();
-        return Ok(predicted.map_or(f64::NAN, |predicted| {
-            rmse(&values[known..], &predicted[known.min(predicted.len())..])
-        }));
-    }
-    let search = Peaks {
-        starts: 6,
-        from: vec![shown.fit.best.clone()],
-        draws: 1000,
-        ..Peaks::default()
+        whole.collect(Point::Line(peak.line.as_slice()))?.1.predictions
+    } else {
+        let search = Peaks {
+            starts: 6,
+            from: vec![shown.fit.best.clone()],
+            draws: 1000,
+            ..Peaks::default()
+        };
+        let seed = shown.first.child(1);
+        let found = search.explore(&posterior, seed, &Quiet)?;
+        let Some(draws) = found.draws else { return Ok(f64::NAN) };
+        mean_prediction(&whole, &draws)?
     };
-    let found = search.explore(&posterior, shown.first.child(1), &Quiet)?;
-    let Some(draws) = found.draws else { return Ok(f64::NAN) };
-    let predicted = mean_prediction(&whole, &draws)?;
-    Ok(rmse(&values[known..], &predicted[known.min(predicted.len())..]))
+    Ok(rmse(&last(values), &last(&predicted)))
+}
+
+/// The values of all series that are held out.
+fn last(series: &[Vec<f64>]) -> Vec<f64> {
+    let of = |values: &Vec<f64>| {
+        let known = (KNOWN * values.len() as f64) as usize;
+        values[known.clamp(1, values.len())..].to_vec()
+    };
+    series.iter().flat_map(of).collect()
 }
 
 /// Where the mass is at the recorded times: the predicted speeds summed by
 /// the trapezoidal rule, or the predicted positions.
-fn places(
-    event: &Event,
-    quantity: Quantity,
-    times: &[f64],
-    predicted: &[f64],
-) -> Vec<f64> {
+fn places_of(event: &Event, series: &Series, predicted: &[f64]) -> Vec<f64> {
     let start = event.track().origin() + event.start();
-    if quantity == Quantity::Position {
+    if series.quantity() == Quantity::Position {
         return predicted.iter().map(|s| start + s).collect();
     }
     let (mut time, mut speed) = (0.0, event.release_speed());
     let mut place = start;
-    times
+    series
+        .times()
         .iter()
         .zip(predicted)
         .map(|(&t, &p)| {
-            let next = match quantity {
+            let next = match series.quantity() {
                 Quantity::Acceleration => speed + p * (t - time),
                 _ => p,
             };

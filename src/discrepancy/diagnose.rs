@@ -7,22 +7,23 @@ use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::attribute::{Attribution, Known, attribute, extend, pair};
-use super::before_and_after::{Shown, rows_of, show};
+use super::before_and_after::{Figures, Shown, recordings, rows_of, show};
 use super::diagnosis::{
     Baseline, Corrected, Diagnosis, Improvement, Judged, Pair, Pictured,
     Verdict,
 };
 use super::fit::Fit;
-use super::judge::{Odds, group, judge, label, told, verdict};
+use super::judge::{Odds, group, judge, told, verdict};
 use super::locate::{FreeForce, free_fit, locate};
 use super::mechanisms::catalogue;
 use super::place::mismatch;
+use super::together::{Sharing, Together};
 use crate::change::{Family, Mechanism};
 use crate::draws::{self, summarise};
 use crate::error::{Error, Result};
 use crate::infer::Progress;
 use crate::model::{Assembled, Program};
-use crate::observe::Event;
+use crate::observe::{Event, Extent};
 use crate::physics::forces::Axis;
 use crate::seed::Seed;
 
@@ -48,6 +49,24 @@ impl Options {
             friction: model.friction(),
             noise: model.noise(),
         }
+    }
+
+    /// Those of several events under one model.
+    pub fn of_all(together: &Together, seed: u64) -> Self {
+        let mut all = Self { seed, ..Self::default() };
+        for event in together.events() {
+            for (text, own) in [
+                (&mut all.friction, event.friction()),
+                (&mut all.noise, event.noise()),
+            ] {
+                if !text.split(" | ").any(|known| known == own) {
+                    let between = if text.is_empty() { "" } else { " | " };
+                    text.push_str(between);
+                    text.push_str(&own);
+                }
+            }
+        }
+        all
     }
 
     /// The blocks that the model already has, without their arguments.
@@ -92,76 +111,197 @@ pub fn diagnose<P: Program>(
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<Diagnosis> {
-    let begun = Instant::now();
-    let seed = Seed::new(options.seed);
     let extent = event.extent();
     let all = catalogue(&extent, &options.blocks());
-    let found = attribute(program, &all, seed.child(0), progress)?;
-    progress.begin("locating the mismatch", None);
-    let forces = [Axis::Place, Axis::Time, Axis::Speed]
-        .into_par_iter()
-        .enumerate()
-        .map(|(i, axis)| {
-            let seed = seed.child(10 + i as u64);
-            locate(program, &extent, axis, found.none.own(), seed)
-        })
-        .collect::<Result<Vec<FreeForce>>>()?;
-    let judged = judge(&found, &all, &forces, &options.odds);
-    let verdict = verdict(&judged);
-    progress.begin("weighing pairs", None);
-    let chosen = choose(program, &all, &found, &judged, verdict, seed)?;
-    let (verdict, chosen) = explained(verdict, chosen, &judged, &all);
-    progress.begin("showing", None);
-    let before = Shown {
-        mechanisms: Vec::new(),
-        fit: &found.none,
-        first: seed.child(30),
-        rough: false,
-    };
-    let free = match verdict {
-        Verdict::Unexplained => {
-            Some(free_form(program, event, &forces, &found, seed)?)
-        }
-        _ => None,
-    };
-    let after = match (&chosen, &free) {
-        (Some(chosen), _) => Some(Shown {
-            mechanisms: chosen
-                .which
-                .iter()
-                .map(|&i| all[i].as_ref())
-                .collect(),
-            fit: &chosen.fit,
-            first: seed.child(40),
+    Subject { program, events: vec![event], extent, all }
+        .diagnose(options, progress)
+}
+
+/// Finds where several recordings differ from one model and what was left out
+/// of all of them; evidence adds up.
+///
+/// # Errors
+/// As [`diagnose`].
+pub fn diagnose_together(
+    program: &Together,
+    sharing: Sharing,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Diagnosis> {
+    let events = program.events().iter().map(Assembled::event).collect();
+    let (extent, all) = (program.extent(), program.catalogue(sharing));
+    Subject { program, events, extent, all }.diagnose(options, progress)
+}
+
+/// A model with its events and what may be missing from it.
+struct Subject<'a, P> {
+    program: &'a P,
+    events: Vec<&'a Event>,
+    extent: Extent,
+    all: Vec<Box<dyn Mechanism>>,
+}
+
+impl<P: Program> Subject<'_, P> {
+    fn diagnose(
+        &self,
+        options: &Options,
+        progress: &dyn Progress,
+    ) -> Result<Diagnosis> {
+        let begun = Instant::now();
+        let seed = Seed::new(options.seed);
+        let (program, all) = (self.program, &self.all[..]);
+        let found = attribute(program, all, seed.child(0), progress)?;
+        progress.begin("locating the mismatch", None);
+        let forces = self.locate(&found, seed)?;
+        let judged = judge(&found, all, &forces, &options.odds);
+        let verdict = verdict(&judged);
+        progress.begin("weighing pairs", None);
+        let chosen = choose(program, all, &found, &judged, verdict, seed)?;
+        let (verdict, chosen) = explained(verdict, chosen, &judged, all);
+        progress.begin("showing", None);
+        let free = match verdict {
+            Verdict::Unexplained => {
+                let force = most_probable(&forces)?;
+                let seed = seed.child(20);
+                let none = &found.none;
+                Some(free_fit(program, &self.extent, force, none, seed)?)
+            }
+            _ => None,
+        };
+        let after = shown_after(chosen.as_ref(), free.as_ref(), all, seed);
+        let mut diagnosis = self.told(&found.none, after, seed)?;
+        diagnosis.baseline.friction.clone_from(&options.friction);
+        diagnosis.baseline.noise.clone_from(&options.noise);
+        diagnosis.verdict = verdict;
+        diagnosis.group = group(&judged);
+        let reaches = chosen.as_ref().map(|c| reaches(c, all));
+        let reaches = reaches.unwrap_or_default();
+        let (event, pictured) = (self.events[0], &diagnosis.pictured[0]);
+        diagnosis.mismatch =
+            mismatch(verdict, &reaches, &forces, event, pictured);
+        mark(&mut diagnosis, &self.events);
+        diagnosis.corrected = corrected(&chosen, all, options);
+        diagnosis.separating = separating(&diagnosis.group, &judged);
+        diagnosis.mechanisms = judged;
+        diagnosis.forces = forces;
+        diagnosis.seconds = begun.elapsed().as_secs_f64();
+        Ok(diagnosis)
+    }
+
+    /// The free-form force along every axis.
+    fn locate(
+        &self,
+        found: &Attribution,
+        seed: Seed,
+    ) -> Result<Vec<FreeForce>> {
+        [Axis::Place, Axis::Time, Axis::Speed]
+            .into_par_iter()
+            .enumerate()
+            .map(|(i, axis)| {
+                let seed = seed.child(10 + i as u64);
+                let own = found.none.own();
+                locate(self.program, &self.extent, axis, own, seed)
+            })
+            .collect()
+    }
+
+    /// Before, after, and what both predict.
+    fn told(
+        &self,
+        none: &Fit,
+        after: Option<Shown<'_>>,
+        seed: Seed,
+    ) -> Result<Diagnosis> {
+        let before = Shown {
+            mechanisms: Vec::new(),
+            fit: none,
+            first: seed.child(30),
             rough: false,
-        }),
-        (None, Some((mechanism, fit))) => Some(Shown {
-            mechanisms: vec![mechanism.as_ref()],
-            fit,
-            first: seed.child(40),
-            rough: true,
-        }),
-        (None, None) => None,
+        };
+        let old = show(self.program, &self.events, &before)?;
+        let new = match &after {
+            Some(after) => show(self.program, &self.events, after)?,
+            None => old.clone(),
+        };
+        let fit = after.as_ref().map_or(none, |after| after.fit);
+        let names: Vec<&str> =
+            self.events.iter().map(|event| event.name()).collect();
+        let mut warnings = none.warnings.clone();
+        warnings.extend(fit.warnings.iter().cloned());
+        warnings.dedup();
+        Ok(Diagnosis {
+            event: names.join(" + "),
+            baseline: baseline(none, &old, self.events[0]),
+            selected: after.iter().flat_map(Shown::names).collect(),
+            improvement: improvement(none, fit, &old, &new),
+            parameters: told(&summarise(&fit.draws), None)
+                .into_iter()
+                .filter(|p| !p.name.starts_with("unknown."))
+                .collect(),
+            pictured: pictured(&self.events, &old, &new),
+            warnings,
+            ..Diagnosis::default()
+        })
+    }
+}
+
+/// What the corrected model is, to be shown.
+fn shown_after<'a>(
+    chosen: Option<&'a Chosen>,
+    free: Option<&'a (Box<dyn Mechanism>, Fit)>,
+    all: &'a [Box<dyn Mechanism>],
+    seed: Seed,
+) -> Option<Shown<'a>> {
+    let (mechanisms, fit, rough) = match (chosen, free) {
+        (Some(chosen), _) => {
+            let which = chosen.which.iter().map(|&i| all[i].as_ref());
+            (which.collect(), &chosen.fit, false)
+        }
+        (None, Some((force, fit))) => (vec![force.as_ref()], fit, true),
+        (None, None) => return None,
     };
-    let mut diagnosis = told_of(program, event, before, after)?;
-    diagnosis.baseline.friction.clone_from(&options.friction);
-    diagnosis.baseline.noise.clone_from(&options.noise);
-    diagnosis.verdict = verdict;
-    diagnosis.group = group(&judged);
-    let reaches = chosen.as_ref().map(|c| reaches(c, &all));
-    diagnosis.mismatch = mismatch(
-        verdict,
-        &reaches.unwrap_or_default(),
-        &forces,
-        event,
-        &diagnosis.pictured[0],
-    );
-    diagnosis.corrected = corrected(&chosen, &all, options);
-    diagnosis.separating = separating(&diagnosis.group, &judged);
-    diagnosis.mechanisms = judged;
-    diagnosis.forces = forces;
-    diagnosis.seconds = begun.elapsed().as_secs_f64();
-    Ok(diagnosis)
+    Some(Shown { mechanisms, fit, first: seed.child(40), rough })
+}
+
+fn baseline(none: &Fit, old: &Figures, event: &Event) -> Baseline {
+    let innovations = old.innovations.concat();
+    Baseline {
+        log_evidence: none.log_evidence,
+        rmse: old.rmse,
+        ljung_box_p: old.ljung_box_p,
+        shapiro_wilk_p: shapiro_wilk(&innovations),
+        predictive_p: largest_p(&innovations),
+        stationary_sd: stationary_sd(&none.draws),
+        instrument: instrument(event),
+        ..Baseline::default()
+    }
+}
+
+fn improvement(
+    none: &Fit,
+    fit: &Fit,
+    old: &Figures,
+    new: &Figures,
+) -> Improvement {
+    let pair =
+        |of: fn(&Figures) -> f64| Pair { before: of(old), after: of(new) };
+    let gain = fit.log_evidence - none.log_evidence;
+    Improvement {
+        log10_bayes_factor: gain / LN_10,
+        rmse: pair(|f| f.rmse),
+        elpd: pair(|f| f.elpd),
+        heldout_rmse: pair(|f| f.heldout_rmse),
+        coverage90: pair(|f| f.coverage90),
+        ljung_box_p: pair(|f| f.ljung_box_p),
+    }
+}
+
+/// The free-form force along the axis with the most evidence.
+fn most_probable(forces: &[FreeForce]) -> Result<&FreeForce> {
+    forces
+        .iter()
+        .max_by(|a, b| a.log_bayes_factor.total_cmp(&b.log_bayes_factor))
+        .ok_or_else(|| Error::inference("no free-form force was inferred"))
 }
 
 /// Where the free-form force is more probable than any one mechanism, several
@@ -190,22 +330,6 @@ fn explained(
         Some(_) => Verdict::Measurement,
     };
     (verdict, Some(chosen))
-}
-
-/// The free-form force along the axis with the most evidence, fitted.
-fn free_form<P: Program>(
-    program: &P,
-    event: &Event,
-    forces: &[FreeForce],
-    found: &Attribution,
-    seed: Seed,
-) -> Result<(Box<dyn Mechanism>, Fit)> {
-    let force = forces
-        .iter()
-        .max_by(|a, b| a.log_bayes_factor.total_cmp(&b.log_bayes_factor))
-        .ok_or_else(|| Error::inference("no free-form force was inferred"))?;
-    let extent = event.extent();
-    free_fit(program, &extent, force, &found.none, seed.child(20))
 }
 
 /// The model to go on with: the best mechanism where there is one, or a pair
@@ -381,79 +505,31 @@ fn reaches(
     reaches
 }
 
-/// Before, after, and what both predict.
-fn told_of<P: Program>(
-    program: &P,
-    event: &Event,
-    before: Shown<'_>,
-    after: Option<Shown<'_>>,
-) -> Result<Diagnosis> {
-    let old = show(program, event, &before)?;
-    let new = match &after {
-        Some(after) => show(program, event, after)?,
-        None => old.clone(),
-    };
-    let fits = (before.fit, after.as_ref().map_or(before.fit, |a| a.fit));
-    let pairs = |of: fn(&super::before_and_after::Figures) -> f64| Pair {
-        before: of(&old),
-        after: of(&new),
-    };
-    let gain = fits.1.log_evidence - fits.0.log_evidence;
-    let mut warnings = fits.0.warnings.clone();
-    warnings.extend(fits.1.warnings.iter().cloned());
-    warnings.dedup();
-    Ok(Diagnosis {
-        event: event.name().to_owned(),
-        baseline: Baseline {
-            log_evidence: fits.0.log_evidence,
-            rmse: old.rmse,
-            ljung_box_p: old.ljung_box_p,
-            shapiro_wilk_p: shapiro_wilk(&old.innovations),
-            predictive_p: largest_p(&old.innovations),
-            stationary_sd: stationary_sd(&fits.0.draws),
-            instrument: instrument(event),
-            ..Baseline::default()
-        },
-        selected: after.iter().flat_map(Shown::names).collect(),
-        improvement: Improvement {
-            log10_bayes_factor: gain / LN_10,
-            rmse: pairs(|f| f.rmse),
-            elpd: pairs(|f| f.elpd),
-            heldout_rmse: pairs(|f| f.heldout_rmse),
-            coverage90: pairs(|f| f.coverage90),
-            ljung_box_p: pairs(|f| f.ljung_box_p),
-        },
-        parameters: told(&summarise(&fits.1.draws), None)
-            .into_iter()
-            .filter(|p| !p.name.starts_with("unknown."))
-            .collect(),
-        pictured: vec![pictured(event, old, new)],
-        warnings,
-        ..Diagnosis::default()
-    })
-}
-
+/// Each recording with what both models predict of it.
 fn pictured(
-    event: &Event,
-    before: super::before_and_after::Figures,
-    after: super::before_and_after::Figures,
-) -> Pictured {
-    let mut pictured = Pictured {
-        event: event.name().to_owned(),
-        places: after.places,
-        before: before.bands,
-        after: after.bands,
-        ..Pictured::default()
-    };
-    if let Some(series) = event.recordings().next() {
-        pictured.quantity = series.quantity().name().to_owned();
-        pictured.unit = series.quantity().unit().to_owned();
-        pictured.times = series.times().to_vec();
-        pictured.values = series.values().to_vec();
-    }
-    let (x, z) = event.track().points();
-    pictured.track = (x.to_vec(), z.to_vec());
-    pictured
+    events: &[&Event],
+    before: &Figures,
+    after: &Figures,
+) -> Vec<Pictured> {
+    recordings(events)
+        .into_iter()
+        .enumerate()
+        .map(|(i, (event, series))| {
+            let (x, z) = event.track().points();
+            Pictured {
+                event: event.name().to_owned(),
+                quantity: series.quantity().name().to_owned(),
+                unit: series.quantity().unit().to_owned(),
+                times: series.times().to_vec(),
+                values: series.values().to_vec(),
+                places: after.places[i].clone(),
+                before: before.bands[i].clone(),
+                after: after.bands[i].clone(),
+                track: (x.to_vec(), z.to_vec()),
+                ..Pictured::default()
+            }
+        })
+        .collect()
 }
 
 fn shapiro_wilk(innovations: &[f64]) -> f64 {
@@ -487,6 +563,27 @@ fn instrument(event: &Event) -> Option<f64> {
     Some(errors.iter().sum::<f64>() / errors.len() as f64)
 }
 
+/// Marks the mismatch on the tracks.
+fn mark(diagnosis: &mut Diagnosis, events: &[&Event]) {
+    let stretches: Vec<(f64, f64)> = diagnosis
+        .mismatch
+        .iter()
+        .map(|m| (m.place_from, m.place_to))
+        .collect();
+    let owners = recordings(events);
+    for (pictured, (event, _)) in diagnosis.pictured.iter_mut().zip(owners) {
+        let track = event.track();
+        for (from, to) in &stretches {
+            let steps = 24;
+            pictured.marked.extend((0..=steps).map(|i| {
+                let share = f64::from(i) / f64::from(steps);
+                let place = from + share * (to - from) - track.origin();
+                track.position(place.max(0.0))
+            }));
+        }
+    }
+}
+
 /// The corrected model, written out.
 fn corrected(
     chosen: &Option<Chosen>,
@@ -510,7 +607,7 @@ fn corrected(
     Corrected {
         equation,
         model: super::paste::model_text(&mechanisms, options),
-        labels: mechanisms.iter().map(|m| label(*m)).collect(),
+        labels: mechanisms.iter().map(|m| m.label()).collect(),
     }
 }
 

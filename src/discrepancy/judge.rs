@@ -86,15 +86,10 @@ fn judged(
         parameters: told(&summarise(&fit.draws)[..fit.added], Some(name)),
         variants: variants
             .iter()
-            .map(|(m, fit)| (label(*m), fit.log_evidence))
+            .map(|(m, fit)| (m.label(), fit.log_evidence))
             .collect(),
         ..Judged::default()
     }
-}
-
-/// What tells a variant from the others of its name.
-pub(super) fn label(mechanism: &dyn Candidate) -> String {
-    mechanism.label()
 }
 
 fn unknown(forces: &[FreeForce], none: &Fit) -> Judged {

@@ -24,7 +24,7 @@ mod together;
 mod words;
 
 pub use attribute::{Attribution, attribute, pair};
-pub use diagnose::{Options, diagnose};
+pub use diagnose::{Options, diagnose, diagnose_together};
 pub use diagnosis::{
     Baseline, Corrected, Diagnosis, Improvement, Judged, Mismatch, Pair,
     Pictured, Told, Verdict,

@@ -283,7 +283,7 @@ impl<'r, K: Kind> Run<'r, K> {
             residuals.push(value - shown);
             covariate.push(change.spread_along.of(time, shown));
         })?;
-        let known = change.known.map(|n| series.first(n.min(series.len())));
+        let known = change.known.map(|share| series.first(series.part(share)));
         let series = match &known {
             Some(Ok(first)) => first,
             Some(Err(error)) => return Err(Stop::Fail(error.clone())),

@@ -18,7 +18,7 @@ pub struct With<'a, P> {
     program: &'a P,
     mechanisms: Vec<(&'a dyn Mechanism, Vec<Unknown>)>,
     names: Vec<String>,
-    known: Option<usize>,
+    known: Option<f64>,
 }
 
 impl<'a, P: Program> With<'a, P> {
@@ -35,10 +35,11 @@ impl<'a, P: Program> With<'a, P> {
         Self { program, mechanisms, names, known: None }
     }
 
-    /// The same, knowing only the first values of each series.
+    /// The same, knowing only the first values of each series: a share of
+    /// them between 0 and 1, and one value at the least.
     #[must_use]
-    pub fn knowing(self, count: usize) -> Self {
-        Self { known: Some(count), ..self }
+    pub fn knowing(self, share: f64) -> Self {
+        Self { known: Some(share), ..self }
     }
 
     /// How many parameters the mechanisms add; they come first.

@@ -220,6 +220,11 @@ impl Series {
 }
 
 impl Series {
+    /// How many values a share of them is: one at the least.
+    pub fn part(&self, share: f64) -> usize {
+        ((share * self.len() as f64) as usize).clamp(1, self.len())
+    }
+
     /// The first `count` values, as if the recording had ended there.
     ///
     /// # Errors

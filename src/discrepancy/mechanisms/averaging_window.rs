@@ -1,6 +1,6 @@
 //! Values that are means over a window of time.
 
-use super::unknown;
+use super::{unknown, variant};
 use crate::change::{Candidate, Change, Family, Missing, Unknown};
 use crate::observe::Extent;
 use crate::prior::AnyPrior;
@@ -19,6 +19,10 @@ pub struct AveragingWindow {
 impl Candidate for AveragingWindow {
     fn name(&self) -> &'static str {
         "averaging-window"
+    }
+
+    fn label(&self) -> String {
+        variant(self)
     }
 
     fn family(&self) -> Family {
