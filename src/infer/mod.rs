@@ -8,6 +8,7 @@
 mod bridge;
 mod importance;
 mod map;
+mod memory;
 mod mh;
 mod mixture;
 #[cfg(feature = "nuts")]
@@ -15,6 +16,7 @@ mod nuts;
 mod quadrature;
 mod reciprocal;
 mod smc;
+mod start;
 mod told;
 
 pub use bridge::Bridge;
