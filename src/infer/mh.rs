@@ -166,6 +166,12 @@ pub(super) fn to_natural(
     Ok(())
 }
 
+/// By how much a normal proposal of the target's own covariance is best
+/// scaled (Gelman, Roberts, Gilks 1996).
+fn best_log_scale(dimension: usize) -> f64 {
+    (2.38 / (dimension as f64).sqrt()).ln()
+}
+
 /// One chain's state.
 struct Walk<'p, 'm> {
     posterior: &'p Posterior<'m>,
@@ -201,7 +207,7 @@ impl<'p, 'm> Walk<'p, 'm> {
         let mut covariance = DMatrix::from_fn(n, n, |i, j| {
             if i == j { spread(i).powi(2) } else { 0.0 }
         });
-        let mut log_scale = (2.38 / (n as f64).sqrt()).ln();
+        let mut log_scale = best_log_scale(n);
         if let Proposal::Fixed(given) = proposal {
             covariance = given.clone();
             log_scale = 0.0;
@@ -261,10 +267,15 @@ impl<'p, 'm> Walk<'p, 'm> {
         Ok(())
     }
 
-    /// Learns the scale from the acceptance of the step just made.
+    /// Learns the scale from the acceptance of the step just made; it stays
+    /// below the best for a normal density of this covariance. Scale and
+    /// covariance that grew together made steps long enough, early on, for
+    /// all chains to fall into one of two modes.
     fn learn_scale(&mut self, gain: f64) {
         if !self.held {
-            self.log_scale += gain * (self.acceptance - TARGET_ACCEPTANCE);
+            let learnt =
+                self.log_scale + gain * (self.acceptance - TARGET_ACCEPTANCE);
+            self.log_scale = learnt.min(best_log_scale(self.place.len()));
         }
     }
 
