@@ -39,9 +39,7 @@ impl Memory {
     }
 }
 
-fn by_parameter<'a>(
-    places: impl Iterator<Item = &'a [f64]>,
-) -> Vec<Vec<f64>> {
+fn by_parameter<'a>(places: impl Iterator<Item = &'a [f64]>) -> Vec<Vec<f64>> {
     let mut columns = Vec::new();
     for place in places {
         columns.resize(place.len(), Vec::new());

@@ -7,6 +7,7 @@
 
 mod bridge;
 mod importance;
+mod legendre;
 mod map;
 mod memory;
 mod mh;
@@ -33,7 +34,7 @@ pub use smc::Smc;
 use std::fmt::Debug;
 use std::time::Instant;
 
-use crate::draws::Draws;
+use crate::draws::{Draws, log_sum_exp};
 use crate::error::{Error, Result};
 use crate::model::{Cost, Posterior};
 use crate::seed::Seed;
@@ -231,13 +232,4 @@ fn draws_of(posterior: &Posterior<'_>) -> Result<Draws> {
         parameters.iter().map(|p| p.name.clone()).collect(),
         parameters.iter().map(|p| p.unit.clone()).collect(),
     )
-}
-
-/// ln sum exp of the terms.
-fn log_sum_exp(terms: impl Iterator<Item = f64> + Clone) -> f64 {
-    let top = terms.clone().fold(f64::NEG_INFINITY, f64::max);
-    if top == f64::NEG_INFINITY {
-        return top;
-    }
-    top + terms.map(|t| (t - top).exp()).sum::<f64>().ln()
 }

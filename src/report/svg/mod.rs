@@ -10,6 +10,7 @@ mod boxes;
 mod canvas;
 mod curves;
 mod densities;
+mod histograms;
 mod pairs;
 mod palette;
 mod recording;
@@ -19,6 +20,7 @@ mod track;
 
 pub use boxes::{Boxes, box_plots};
 pub use curves::{Curves, curves};
+pub use histograms::{Histogram, histograms};
 
 use super::{CalibrationReport, text};
 
