@@ -93,10 +93,15 @@ fn track() -> Result<Track> {
 /// The event with a series yet to be filled, its values spread over the
 /// recording's 21 s by `step` \[s\].
 pub(super) fn plan(step: f64, window: f64) -> Result<Event> {
+    on(track()?, step, window)
+}
+
+/// The same on another track.
+pub(super) fn on(track: Track, step: f64, window: f64) -> Result<Event> {
     let count = (VALUES as f64 / step).round() as usize;
     let times: Vec<f64> = (1..=count).map(|i| i as f64 * step).collect();
     let series = Series::velocity(times, vec![0.0; count])?;
-    Event::on(track()?)
+    Event::on(track)
         .named("Lautaret-like, synthetic")
         .depth(DEPTH)
         .release(0.0, 0.0)

@@ -314,7 +314,7 @@ fn ranks(found: &Reproduction) -> Picture {
         "ranks",
         "Simulation-based calibration",
         "Not in the paper. The rank of a true value drawn from the prior \
-         (xi's wide) among draws of its posterior, in tenths: even where \
+         (xi's wide) among draws of its posterior, in tenths, on a longer slope: even where \
          model and sampler are right. Line: the mean; dashed: where a tenth \
          lies 99 times in 100; p: that of an unevenness so large, by \
          chi-squared.",
