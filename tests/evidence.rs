@@ -236,7 +236,11 @@ struct Findings {
     values: usize,
     /// The share of the posterior whose patch begins in the first half.
     early: f64,
+    /// The share whose patch begins between the two places of a twin.
+    between: f64,
     smc: Vec<Evidence>,
+    /// How many of these runs warned.
+    warned: usize,
     importance: Evidence,
     bridge: Evidence,
     /// Bridge sampling on chains, and whether it warned.
@@ -269,11 +273,16 @@ fn explore(case: Case) -> Findings {
     let names = draws.names();
     let begin = names.iter().position(|name| name == "begin").unwrap();
     let begins = draws.pooled(begin);
-    let early = begins.iter().filter(|b| **b < MIDDLE).count();
+    let share = |within: &dyn Fn(f64) -> bool| {
+        let count = begins.iter().filter(|b| within(**b)).count();
+        count as f64 / begins.len() as f64
+    };
     Findings {
         case,
         values: model.event.velocity.len(),
-        early: early as f64 / begins.len() as f64,
+        early: share(&|begin| begin < MIDDLE),
+        between: share(&|begin| (begin - MIDDLE).abs() < APART),
+        warned: runs.iter().filter(|r| !r.warnings.is_empty()).count(),
         seconds: [runs[0].cost.seconds, importance.cost.seconds, bridged],
         smc: runs.into_iter().map(|r| r.evidence.unwrap()).collect(),
         importance: importance.evidence.unwrap(),
@@ -284,6 +293,10 @@ fn explore(case: Case) -> Findings {
 
 /// Between the two places where a twin has its patches \[m\].
 const MIDDLE: f64 = 380.0;
+
+/// How far about it is in between \[m\]: the places begin before 200 m and
+/// after 500 m.
+const APART: f64 = 60.0;
 
 impl Findings {
     /// Whether either place has a share that a posterior must not miss.
@@ -320,14 +333,15 @@ impl Findings {
         };
         let told = |e: &Evidence| format!("{:.3} ± {:.3}", e.log, e.se);
         format!(
-            "| {index} | {}, {}, {} | {} | {} | {:.2} | {} | {} | {} | \
-             {:.3} | {:.3} | {}{} | {:.1}, {:.1}, {:.1} |",
+            "| {index} | {}, {}, {} | {} | {} | {:.2} | {:.2} | {} | {} | \
+             {} | {:.3} | {:.3} | {}{} | {:.1}, {:.1}, {:.1} |",
             word(drag, "Voellmy", "Coulomb"),
             word(smooth, "smooth", "pieces"),
             word(correlated, "AR(1)", "iid"),
             self.values,
             word(self.two_modes(), "two", word(twin, "one of two", "one")),
             self.early,
+            self.between,
             told(&self.smc[0]),
             told(&self.importance),
             told(&self.bridge),
@@ -343,9 +357,10 @@ impl Findings {
 }
 
 const HEAD: &str = "\
-| event | law, edges, noise | values | modes | early | smc | importance | \
-bridge | mean of smc | spread of smc | bridge on chains | seconds |
-|---|---|---|---|---|---|---|---|---|---|---|---|";
+| event | law, edges, noise | values | modes | early | between | smc | \
+importance | bridge | mean of smc | spread of smc | bridge on chains | \
+seconds |
+|---|---|---|---|---|---|---|---|---|---|---|---|---|";
 
 /// The root mean square, which a standardised difference has at 1.
 fn size(values: impl Iterator<Item = f64>) -> f64 {
@@ -376,6 +391,8 @@ fn three_estimators_of_the_evidence_agree() {
     println!("spread of smc over its stated error: {sd:.2}");
     let two = all.iter().filter(|f| f.two_modes()).count();
     println!("two modes: {two}");
+    let warned: usize = all.iter().map(|f| f.warned).sum();
+    println!("runs of smc that warned: {warned}");
     for f in &all {
         let far = f.differences().iter().any(|d| d.abs() > 4.0);
         assert!(!far, "event {}: {:?}", f.case.index, f.differences());

@@ -26,7 +26,7 @@ fn a_small_study_is_whole() {
         }
     }
     let html = page(&found);
-    assert_eq!(html.matches("<svg").count(), 4);
+    assert_eq!(html.matches("<svg").count(), 5);
     assert!(html.contains("Lautaret-like"));
     assert!(words(&found).iter().all(|s| !s.contains("NaN")));
 }

@@ -121,7 +121,7 @@ impl Weighted {
 
     fn predict(&self, value: usize) -> f64 {
         let terms = self.log_weights.iter().zip(&self.table);
-        log_sum_exp(&terms.map(|(w, row)| w + row[value]).collect::<Vec<_>>())
+        log_sum_exp(terms.map(|(w, row)| w + row[value]))
     }
 }
 

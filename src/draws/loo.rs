@@ -53,7 +53,8 @@ pub fn loo(log_likelihood: &[Vec<f64>]) -> Option<Loo> {
         let (elpd, k) = left_out(&observed);
         pointwise.push(elpd);
         pareto_k.push(k);
-        in_sample += log_sum_exp(&observed) - (observed.len() as f64).ln();
+        in_sample += log_sum_exp(observed.iter().copied())
+            - (observed.len() as f64).ln();
     }
     let (elpd, se) = sum_and_error(&pointwise);
     Some(Loo { elpd, se, p_loo: in_sample - elpd, pointwise, pareto_k })
@@ -82,7 +83,7 @@ fn left_out(log_likelihood: &[f64]) -> (f64, f64) {
     let log_ratios: Vec<f64> = log_likelihood.iter().map(|l| -l).collect();
     let (log_weights, k) = psis(&log_ratios);
     let terms = log_weights.iter().zip(log_likelihood).map(|(w, l)| w + l);
-    (log_sum_exp(&terms.collect::<Vec<_>>()), k)
+    (log_sum_exp(terms), k)
 }
 
 /// The shape below which an importance-sampling estimate from `draws` draws
@@ -123,7 +124,7 @@ pub fn psis(log_ratios: &[f64]) -> (Vec<f64>, f64) {
     }
     let mut logs: Vec<f64> = log_ratios.iter().map(|r| r - largest).collect();
     let k = smooth_tail(&mut logs);
-    let norm = log_sum_exp(&logs);
+    let norm = log_sum_exp(logs.iter().copied());
     logs.iter_mut().for_each(|log| *log -= norm);
     (logs, k)
 }
@@ -193,7 +194,7 @@ pub fn generalised_pareto(excess: &[f64]) -> Option<(f64, f64)> {
         n * ((-b / k).ln() - k - 1.0)
     };
     let logs: Vec<f64> = ratios.iter().map(likelihood).collect();
-    let norm = log_sum_exp(&logs);
+    let norm = log_sum_exp(logs.iter().copied());
     let weighted = ratios.iter().zip(&logs);
     let b: f64 = weighted.map(|(b, log)| b * (log - norm).exp()).sum();
     let k = shape(b);
@@ -216,12 +217,12 @@ fn pareto_quantile(p: f64, k: f64, scale: f64) -> f64 {
 }
 
 /// The logarithm of a sum of exponentials; minus infinity for no terms.
-pub(super) fn log_sum_exp(logs: &[f64]) -> f64 {
-    let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    if largest == f64::NEG_INFINITY && !logs.iter().any(|l| l.is_nan()) {
+pub(crate) fn log_sum_exp(logs: impl Iterator<Item = f64> + Clone) -> f64 {
+    let largest = logs.clone().fold(f64::NEG_INFINITY, f64::max);
+    if largest == f64::NEG_INFINITY && !logs.clone().any(f64::is_nan) {
         return largest;
     }
-    let sum: f64 = logs.iter().map(|log| (log - largest).exp()).sum();
+    let sum: f64 = logs.map(|log| (log - largest).exp()).sum();
     largest + sum.ln()
 }
 

@@ -47,6 +47,7 @@ pub use kolmogorov::{
     two_sample,
 };
 pub use lfo::{Lfo, leave_future_out};
+pub(crate) use loo::log_sum_exp;
 pub use loo::{
     Loo, generalised_pareto, k_threshold, loo, psis, sum_and_error,
 };
@@ -54,6 +55,7 @@ pub use residual::{
     LjungBox, ShapiroWilk, autocorrelation, ljung_box, shapiro_wilk,
 };
 pub use rhat::rhat;
+pub(crate) use summary::median;
 pub use summary::{Summary, quantile, summarise};
 
 /// The chains of a sampler, all of one length and one dimension.

@@ -106,6 +106,11 @@ pub fn quantile(sorted: &[f64], p: f64) -> f64 {
     }
 }
 
+/// The median of values in any order.
+pub(crate) fn median(values: &[f64]) -> f64 {
+    quantile(&sorted(values.to_vec()), 0.5)
+}
+
 /// Numbers in rising order, NaN last whatever its sign.
 pub(super) fn sorted(mut numbers: Vec<f64>) -> Vec<f64> {
     for x in numbers.iter_mut().filter(|x| x.is_nan()) {

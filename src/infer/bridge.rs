@@ -16,7 +16,7 @@ use super::smc::{Base, Particle, population};
 use super::{
     Backend, Effort, Evidence, Inference, MetropolisHastings, Progress, Smc,
 };
-use crate::draws::{Draws, ess_mean, rhat};
+use crate::draws::{Draws, ess_mean, median, rhat};
 use crate::error::{Error, Result};
 use crate::model::Posterior;
 use crate::seed::Seed;
@@ -221,7 +221,7 @@ fn shares(
 /// The fixed point of Meng and Wong's iteration.
 fn iterate(ours: &[Vec<f64>], theirs: &[f64], size: f64) -> Option<f64> {
     let count = theirs.len() as f64;
-    let mut log = median(&ours.concat())?;
+    let mut log = median(&ours.concat());
     for _ in 0..ROUNDS {
         let top = mean(theirs.iter().map(|l| bridge(l - log, size, count).0));
         let below = ours.iter().flatten();
@@ -241,12 +241,6 @@ fn iterate(ours: &[Vec<f64>], theirs: &[f64], size: f64) -> Option<f64> {
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0.0), |(s, n), x| (s + x, n + 1.0));
     sum / count
-}
-
-fn median(values: &[f64]) -> Option<f64> {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().filter(|m| m.is_finite())
 }
 
 /// The variance over the squared mean.

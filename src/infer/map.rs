@@ -14,7 +14,8 @@ use argmin::solver::quasinewton::LBFGS;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::mh::{best_start, value};
+use super::mh::value;
+use super::start::apart;
 use super::{Backend, Inference, Progress};
 use crate::error::{Error, Result};
 use crate::model::{Point, Posterior, Weights};
@@ -236,10 +237,7 @@ impl Backend for Map {
         progress: &dyn Progress,
     ) -> Result<Inference> {
         let mut starts = self.from.clone();
-        for i in 0..self.starts {
-            let mut rng = seed.child(i as u64).rng();
-            starts.push(best_start(posterior, &mut rng)?);
-        }
+        starts.extend(apart(posterior, self.starts, seed)?);
         progress.begin("climbing", Some(starts.len() as u64));
         let mut ends = starts
             .par_iter()

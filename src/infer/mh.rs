@@ -11,6 +11,7 @@ use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
+use super::start::apart;
 use super::{Backend, Effort, Inference, Progress, draws_of};
 use crate::error::{Error, Result};
 use crate::model::{Density, Point, Posterior};
@@ -45,8 +46,8 @@ pub struct MetropolisHastings {
     pub warmup: usize,
     /// How steps are proposed.
     pub proposal: Proposal,
-    /// Where the chains start, parameters as named, in turn; the best of a
-    /// few draws from the prior where empty.
+    /// Where the chains start, parameters as named, in turn; far apart among
+    /// good draws from the prior where empty.
     pub starts: Vec<Vec<f64>>,
 }
 
@@ -77,12 +78,11 @@ impl MetropolisHastings {
     fn chain(
         &self,
         posterior: &Posterior<'_>,
-        index: usize,
+        (index, start): (usize, Vec<f64>),
         seed: Seed,
         progress: &dyn Progress,
     ) -> Result<(Vec<f64>, f64)> {
         let mut rng = seed.child(index as u64).rng();
-        let start = self.start(posterior, index, &mut rng)?;
         let mut walk = Walk::new(posterior, &self.proposal, start)?;
         for step in 0..self.warmup {
             walk.step(&mut rng)?;
@@ -111,26 +111,28 @@ impl MetropolisHastings {
         Ok((rows, walk.accepted as f64 / self.draws.max(1) as f64))
     }
 
-    /// Where a chain starts, in the parameters as named.
-    fn start(
+    /// Where each chain starts, in the parameters as named.
+    fn places(
         &self,
         posterior: &Posterior<'_>,
-        index: usize,
-        rng: &mut Rng,
-    ) -> Result<Vec<f64>> {
-        if let Some(start) = self.starts.get(index % self.starts.len().max(1))
-        {
-            let density = posterior.density(Point::Natural(start))?;
-            if density.rejected.is_some() {
-                return Err(Error::input(format!(
-                    "chain {} cannot start at {start:?}: {}",
-                    index + 1,
-                    density.rejected.unwrap_or("its density is zero")
-                )));
-            }
-            return Ok(start.clone());
+        seed: Seed,
+    ) -> Result<Vec<Vec<f64>>> {
+        if self.starts.is_empty() {
+            return apart(posterior, self.chains, seed);
         }
-        best_start(posterior, rng)
+        let given = self.starts.iter().cycle().take(self.chains).enumerate();
+        given
+            .map(|(index, start)| {
+                let density = posterior.density(Point::Natural(start))?;
+                match density.rejected {
+                    None => Ok(start.clone()),
+                    Some(reason) => Err(Error::input(format!(
+                        "chain {} cannot start at {start:?}: {reason}",
+                        index + 1
+                    ))),
+                }
+            })
+            .collect()
     }
 }
 
@@ -141,45 +143,6 @@ fn tell(progress: &dyn Progress, step: usize) {
     if step % TELL_EVERY == TELL_EVERY - 1 {
         progress.advance(TELL_EVERY as u64);
     }
-}
-
-/// How many draws from the prior compete for a chain's start.
-const CONTENDERS: usize = 40;
-
-/// The best of a few draws from the prior, or of scattered places on the
-/// line where a prior is improper.
-pub(super) fn best_start(
-    posterior: &Posterior<'_>,
-    rng: &mut Rng,
-) -> Result<Vec<f64>> {
-    let mut best: Option<(f64, Vec<f64>)> = None;
-    for round in 0..50 * CONTENDERS {
-        let (density, found) = if posterior.is_proper() {
-            posterior.draw_prior(rng)?
-        } else {
-            let z: Vec<f64> = (0..posterior.dimension())
-                .map(|_| StandardNormal.sample(rng))
-                .map(|z: f64| 2.0 * z)
-                .collect();
-            posterior.collect(Point::Line(&z))?
-        };
-        let height = density.natural();
-        if density.rejected.is_none()
-            && best.as_ref().is_none_or(|(top, _)| height > *top)
-        {
-            best = Some((height, found.natural));
-        }
-        if round + 1 >= CONTENDERS && best.is_some() {
-            break;
-        }
-    }
-    let (_, start) = best.ok_or_else(|| {
-        Error::inference(
-            "no draw from the prior has a positive density: prior and \
-             recording contradict each other, or the model rejects everything",
-        )
-    })?;
-    Ok(start)
 }
 
 /// Turns rows on the real line into rows of the parameters as named.
@@ -201,6 +164,12 @@ pub(super) fn to_natural(
         }
     }
     Ok(())
+}
+
+/// By how much a normal proposal of the target's own covariance is best
+/// scaled (Gelman, Roberts, Gilks 1996).
+fn best_log_scale(dimension: usize) -> f64 {
+    (2.38 / (dimension as f64).sqrt()).ln()
 }
 
 /// One chain's state.
@@ -238,7 +207,7 @@ impl<'p, 'm> Walk<'p, 'm> {
         let mut covariance = DMatrix::from_fn(n, n, |i, j| {
             if i == j { spread(i).powi(2) } else { 0.0 }
         });
-        let mut log_scale = (2.38 / (n as f64).sqrt()).ln();
+        let mut log_scale = best_log_scale(n);
         if let Proposal::Fixed(given) = proposal {
             covariance = given.clone();
             log_scale = 0.0;
@@ -298,10 +267,15 @@ impl<'p, 'm> Walk<'p, 'm> {
         Ok(())
     }
 
-    /// Learns the scale from the acceptance of the step just made.
+    /// Learns the scale from the acceptance of the step just made; it stays
+    /// below the best for a normal density of this covariance. Scale and
+    /// covariance that grew together made steps long enough, early on, for
+    /// all chains to fall into one of two modes.
     fn learn_scale(&mut self, gain: f64) {
         if !self.held {
-            self.log_scale += gain * (self.acceptance - TARGET_ACCEPTANCE);
+            let learnt =
+                self.log_scale + gain * (self.acceptance - TARGET_ACCEPTANCE);
+            self.log_scale = learnt.min(best_log_scale(self.place.len()));
         }
     }
 
@@ -362,9 +336,12 @@ impl Backend for MetropolisHastings {
         }
         let steps = self.chains * (self.warmup + self.draws);
         progress.begin("sampling", Some(steps as u64));
-        let chains: Vec<_> = (0..self.chains)
+        // A path of its own, beside those of the chains.
+        let starts = self.places(posterior, seed.child(self.chains as u64))?;
+        let chains: Vec<_> = starts
             .into_par_iter()
-            .map(|index| self.chain(posterior, index, seed, progress))
+            .enumerate()
+            .map(|start| self.chain(posterior, start, seed, progress))
             .collect::<Result<_>>()?;
         let mut draws = draws_of(posterior)?;
         let mut warnings = Vec::new();

@@ -8,7 +8,9 @@
 mod bridge;
 mod descent;
 mod importance;
+mod legendre;
 mod map;
+mod memory;
 mod mh;
 mod mixture;
 #[cfg(feature = "nuts")]
@@ -17,6 +19,7 @@ mod peaks;
 mod quadrature;
 mod reciprocal;
 mod smc;
+mod start;
 mod told;
 
 pub use bridge::Bridge;
@@ -35,7 +38,7 @@ pub use smc::Smc;
 use std::fmt::Debug;
 use std::time::Instant;
 
-use crate::draws::Draws;
+use crate::draws::{Draws, log_sum_exp};
 use crate::error::{Error, Result};
 use crate::model::{Cost, Posterior};
 use crate::seed::Seed;
@@ -233,13 +236,4 @@ fn draws_of(posterior: &Posterior<'_>) -> Result<Draws> {
         parameters.iter().map(|p| p.name.clone()).collect(),
         parameters.iter().map(|p| p.unit.clone()).collect(),
     )
-}
-
-/// ln sum exp of the terms.
-fn log_sum_exp(terms: impl Iterator<Item = f64> + Clone) -> f64 {
-    let top = terms.clone().fold(f64::NEG_INFINITY, f64::max);
-    if top == f64::NEG_INFINITY {
-        return top;
-    }
-    top + terms.map(|t| (t - top).exp()).sum::<f64>().ln()
 }

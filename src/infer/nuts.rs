@@ -21,7 +21,8 @@ use nuts_rs::{
 };
 use rayon::prelude::*;
 
-use super::mh::{best_start, to_natural};
+use super::mh::to_natural;
+use super::start::{apart, best_start};
 use super::{Backend, Effort, Inference, Progress, draws_of};
 use crate::error::{Error, Result};
 use crate::model::{Posterior, Weights};
@@ -109,6 +110,7 @@ impl Nuts {
     fn chain(
         &self,
         posterior: &Posterior<'_>,
+        from: Vec<f64>,
         seed: Seed,
         progress: &dyn Progress,
     ) -> Result<(Vec<f64>, Course)> {
@@ -119,7 +121,7 @@ impl Nuts {
             .settings()
             .new_chain(0, CpuMath::new(slope), &mut rng)
             .map_err(|e| Error::inference(format!("nuts: {e}")))?;
-        start(posterior, &mut rng, |z| {
+        start(posterior, from, &mut rng, |z| {
             path.set_position(z).map_err(|e| reason(e.downcast_ref(), &e))
         })?;
         let mut course = Course::default();
@@ -200,16 +202,17 @@ const FAR: f64 = 0.2;
 /// How often another start is tried where one has no slope to follow.
 const TRIES: usize = 20;
 
-/// Puts a chain at its start, the best of a few draws from the prior.
+/// Puts a chain at its start, or where that has no slope at another, the best
+/// of a few draws from the prior.
 fn start(
     posterior: &Posterior<'_>,
+    mut from: Vec<f64>,
     rng: &mut Rng,
     mut place: impl FnMut(&[f64]) -> Result<(), Refusal>,
 ) -> Result<()> {
     for _ in 0..TRIES {
-        let x = best_start(posterior, rng)?;
-        match place(&posterior.line(&x)?) {
-            Err(Refusal::Zero) => {}
+        match place(&posterior.line(&from)?) {
+            Err(Refusal::Zero) => from = best_start(posterior, rng)?,
             Err(Refusal::Failed(error)) => return Err(error),
             Ok(()) => return Ok(()),
         }
@@ -369,9 +372,14 @@ impl Backend for Nuts {
         self.check()?;
         let steps = self.chains * (self.warmup + self.draws);
         progress.begin("sampling", Some(steps as u64));
-        let chains: Vec<_> = (0..self.chains)
+        // A path of its own, beside those of the chains.
+        let beside = seed.child(self.chains as u64);
+        let chains: Vec<_> = apart(posterior, self.chains, beside)?
             .into_par_iter()
-            .map(|i| self.chain(posterior, seed.child(i as u64), progress))
+            .enumerate()
+            .map(|(i, from)| {
+                self.chain(posterior, from, seed.child(i as u64), progress)
+            })
             .collect::<Result<_>>()?;
         let mut draws = draws_of(posterior)?;
         let mut courses = Vec::new();

@@ -1,12 +1,15 @@
 //! The evidence from a chain's draws, as in the paper's appendix B.
 //!
 //! 1/Z = mean of g/(L pi) over posterior draws, g a normal density with the
-//! draws' own mean and covariance (Heredia et al. 2020, equation A8). It
-//! costs nothing beyond the chains, but wherever the posterior's tails fall
+//! mean and covariance of posterior draws (Heredia et al. 2020, equation A8):
+//! here those of the first half of each chain, the mean being over the other.
+//! It costs nothing beyond the chains, but wherever the posterior's tails fall
 //! off faster than g's its variance is infinite: the Pareto index of the
 //! ratios says when not to believe it.
 
-use nalgebra::DVector;
+use std::f64::consts::PI;
+
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use statrs::function::erf::erfc;
 
@@ -93,37 +96,63 @@ fn share_outside(posterior: &Posterior<'_>, draws: &Draws) -> f64 {
         .sum()
 }
 
-/// ln g - ln(L pi) at every draw, chain by chain.
+/// ln g - ln(L pi) at the second half of each chain, with a g fitted to the
+/// first halves. Fitted to the very draws that it is averaged over, g follows
+/// their chance, and the spread of the ratios does not show by how much.
 fn log_ratios(
     posterior: &Posterior<'_>,
     draws: &Draws,
 ) -> Result<Vec<Vec<f64>>> {
-    let n = draws.dimension() as f64;
-    let mean = DVector::from_vec(draws.mean());
-    let shape = draws.covariance().cholesky().ok_or_else(|| {
-        Error::inference(
-            "the draws have no spread in some direction: no normal density \
-             fits them",
-        )
-    })?;
-    let l = shape.l();
-    let log_det: f64 = l.diagonal().map(f64::ln).sum();
-    let constant = -0.5 * n * (2.0 * std::f64::consts::PI).ln() - log_det;
+    let middle = draws.iterations() / 2;
+    let g = Normal::fitted(draws, middle)?;
     let ratio = |row: &[f64]| -> Result<f64> {
-        let mut d = DVector::from_column_slice(row) - &mean;
-        l.solve_lower_triangular_mut(&mut d);
         let density = posterior.density(Point::Natural(row))?;
-        let target = value(&density, density.natural());
-        Ok(constant - 0.5 * d.norm_squared() - target)
+        Ok(g.log_density(row) - value(&density, density.natural()))
     };
     (0..draws.chains())
         .map(|c| {
-            (0..draws.iterations())
+            (middle..draws.iterations())
                 .into_par_iter()
                 .map(|i| ratio(draws.row(c, i)))
                 .collect()
         })
         .collect()
+}
+
+/// A normal density with the mean and covariance of draws.
+struct Normal {
+    mean: DVector<f64>,
+    factor: DMatrix<f64>,
+    log_constant: f64,
+}
+
+impl Normal {
+    /// Of so many first iterations of all chains.
+    fn fitted(draws: &Draws, iterations: usize) -> Result<Self> {
+        let names = draws.names().to_vec();
+        let mut chosen = Draws::new(names, draws.units().to_vec())?;
+        for c in 0..draws.chains() {
+            let rows = (0..iterations).map(|i| draws.row(c, i));
+            chosen.push_chain(rows.collect::<Vec<_>>().concat(), None)?;
+        }
+        let shape = chosen.covariance().cholesky().ok_or_else(|| {
+            Error::inference(
+                "the draws have no spread in some direction: no normal \
+                 density fits them",
+            )
+        })?;
+        let (n, factor) = (draws.dimension() as f64, shape.l());
+        let log_det: f64 = factor.diagonal().map(f64::ln).sum();
+        let log_constant = -0.5 * n * (2.0 * PI).ln() - log_det;
+        let mean = DVector::from_vec(chosen.mean());
+        Ok(Self { mean, factor, log_constant })
+    }
+
+    fn log_density(&self, row: &[f64]) -> f64 {
+        let mut d = DVector::from_column_slice(row) - &self.mean;
+        self.factor.solve_lower_triangular_mut(&mut d);
+        self.log_constant - 0.5 * d.norm_squared()
+    }
 }
 
 impl Backend for ReciprocalImportance {

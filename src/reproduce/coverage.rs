@@ -81,14 +81,19 @@ const PAPERS: Effort = Effort { chains: 1, draws: 10_000, warmup: 10_000 };
 /// A short walk: enough to tell the quadrature where to look.
 const SCOUTING: Effort = Effort { chains: 1, draws: 2000, warmup: 1500 };
 
-fn walk(
+/// The draws of a walk, and the posterior by quadrature where they lie.
+fn explored(
     posterior: &Posterior<'_>,
     effort: &Effort,
     seed: Seed,
-) -> Result<Draws> {
+) -> Result<(Draws, Inference)> {
     let walk = MetropolisHastings::random_walk(effort);
     let found = infer(&walk, posterior, seed, &Quiet)?;
-    found.draws.ok_or_else(|| Error::inference("the walk left no draws"))
+    let draws = found
+        .draws
+        .ok_or_else(|| Error::inference("the walk left no draws"))?;
+    let exact = quadrature().from_draws(posterior, &draws, &Quiet)?;
+    Ok((draws, exact))
 }
 
 /// As many nodes as leave the evidence of these models right to 0.02.
@@ -108,14 +113,13 @@ fn fit(
 ) -> Result<Fit> {
     let model = model(event, which, priors)?;
     let posterior = Posterior::new(&model)?;
-    let draws = walk(&posterior, &PAPERS, seed.child(0))?;
+    let (draws, exact) = explored(&posterior, &PAPERS, seed.child(0))?;
     let summaries = summarise(&draws);
     let median = summaries.iter().map(|s| s.q50).collect();
     let search = Map { starts: 1, from: vec![median] };
     let mode = infer(&search, &posterior, seed.child(1), &Quiet)?.mode;
     let bridge = Bridge { draws: 4000, ..Bridge::default() };
     let (sampled, _) = bridge.from_draws(&posterior, &draws, seed.child(2))?;
-    let exact = quadrature().from_draws(&posterior, &draws, &Quiet)?;
     Ok(Fit {
         names: draws.names().to_vec(),
         intervals: summaries.iter().map(|s| (s.q05, s.q95)).collect(),
@@ -267,6 +271,5 @@ fn exactly(
 ) -> Result<Inference> {
     let model = model(event, which, priors)?;
     let posterior = Posterior::new(&model)?;
-    let draws = walk(&posterior, &SCOUTING, seed)?;
-    quadrature().from_draws(&posterior, &draws, &Quiet)
+    explored(&posterior, &SCOUTING, seed).map(|(_, exact)| exact)
 }

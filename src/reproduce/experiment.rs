@@ -1,8 +1,10 @@
 //! The paper's synthetic experiment: truth, track, priors, models, series.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use crate::error::{Error, Result};
+use crate::io::read_track;
 use crate::model::Assembled;
 use crate::noise;
 use crate::observe::{Event, Series};
@@ -85,28 +87,21 @@ pub const PRINTED: Priors = Priors { xi: "Gamma(25, 40)", ..WIDE };
 /// published.
 fn track() -> Result<Track> {
     let text = include_str!("../../tests/data/voellmy-21/track.csv");
-    let number = |field: Option<&str>| -> Result<f64> {
-        let field = field.unwrap_or_default().trim();
-        field.parse().map_err(|_| {
-            Error::input(format!("track: {field:?} is not a number"))
-        })
-    };
-    let (mut x, mut z) = (Vec::new(), Vec::new());
-    for line in text.lines().skip(1).filter(|line| !line.is_empty()) {
-        let mut fields = line.split(',');
-        x.push(number(fields.next())?);
-        z.push(number(fields.next())?);
-    }
-    Track::from_points(&x, &z)
+    read_track(text.as_bytes(), Path::new("voellmy-21/track.csv"))
 }
 
 /// The event with a series yet to be filled, its values spread over the
 /// recording's 21 s by `step` \[s\].
 pub(super) fn plan(step: f64, window: f64) -> Result<Event> {
+    on(track()?, step, window)
+}
+
+/// The same on another track.
+pub(super) fn on(track: Track, step: f64, window: f64) -> Result<Event> {
     let count = (VALUES as f64 / step).round() as usize;
     let times: Vec<f64> = (1..=count).map(|i| i as f64 * step).collect();
     let series = Series::velocity(times, vec![0.0; count])?;
-    Event::on(track()?)
+    Event::on(track)
         .named("Lautaret-like, synthetic")
         .depth(DEPTH)
         .release(0.0, 0.0)

@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::{ModelStudy, PriorStudy, Reading, Reproduction, error_of};
+use crate::sbc::Ranks;
 
 /// `reproduction.json`, schema 1: coverage in percent.
 pub fn reproduction_json(found: &Reproduction) -> Value {
@@ -21,7 +22,17 @@ pub fn reproduction_json(found: &Reproduction) -> Value {
         "windows": found.windows.iter().map(reading).collect::<Vec<_>>(),
         "delta1": case.delta1,
         "delta2": case.delta2,
+        "sbc": found.ranks.iter().map(ranks).collect::<Vec<_>>(),
     })
+}
+
+/// The p-value and the histogram of each quantity's ranks.
+fn ranks(ranks: &Ranks) -> Value {
+    let named = ranks.names.iter().enumerate().map(|(i, name)| {
+        let said = json!({ "p": ranks.p(i), "tenths": ranks.histogram(i) });
+        (name.clone(), said)
+    });
+    named.collect()
 }
 
 fn prior(study: &PriorStudy, samples: usize) -> Value {

@@ -10,6 +10,7 @@ mod coverage;
 mod experiment;
 mod json;
 mod page;
+mod ranked;
 mod readings;
 
 pub use case::{Case, Sensitivity};
@@ -21,6 +22,7 @@ pub use page::{page, words};
 use crate::error::{Error, Result};
 use crate::infer::Progress;
 use crate::observe::Series;
+use crate::sbc::Ranks;
 use crate::seed::Seed;
 
 /// Everything that was computed again.
@@ -40,6 +42,8 @@ pub struct Reproduction {
     pub case: Case,
     /// Table 6 and Figure 9 on the first series.
     pub sensitivity: Vec<Sensitivity>,
+    /// Simulation-based calibration of M0 and M1.
+    pub ranks: [Ranks; 2],
 }
 
 /// The most series that another reading is tried on.
@@ -70,6 +74,10 @@ pub fn reproduce(
     let printed = study("printed", PRINTED, 2)?;
     let readings = readings::readings(few, root.child(3), progress)?;
     let windows = readings::windows(few, root.child(4), progress)?;
+    let replications = 2 * samples;
+    let both = Some(2 * replications as u64);
+    progress.begin("simulation-based calibration", both);
+    let ranks = ranked::ranked(replications, root.child(6), progress)?;
     progress.begin("one series in detail", None);
     let first =
         experiment::plan(1.0, 0.0)?.with_recording(first_of(&seen)?)?;
@@ -81,6 +89,7 @@ pub fn reproduce(
         windows,
         case: case::case(&first, seed)?,
         sensitivity: case::sensitivity(&first, root.child(5))?,
+        ranks,
     })
 }
 

@@ -26,10 +26,8 @@ enum Instead {
     Warns,
     /// It says that it cannot.
     Refuses,
-    /// It is wrong, and nothing says so: a fault to be mended.
-    Silent,
 }
-use Instead::{Refuses, Silent, Warns};
+use Instead::{Refuses, Warns};
 
 /// Backend, target, what it does instead, and why.
 const CANNOT: &[(&str, &str, Instead, &str)] = &[
@@ -40,8 +38,8 @@ const CANNOT: &[(&str, &str, Instead, &str)] = &[
     ("mh", "funnel", Warns, "one step length for mouth and neck"),
     ("random-walk", "funnel", Warns, "one step length for mouth and neck"),
     ("reciprocal", "funnel", Warns, "it stands on the random walk"),
-    ("smc", "funnel", Silent, "one scale of moves for mouth and neck"),
-    ("bridge", "funnel", Silent, "it stands on the particles of smc"),
+    ("smc", "funnel", Warns, "one scale of moves for mouth and neck"),
+    ("bridge", "funnel", Warns, "it stands on the particles of smc"),
     ("importance", "funnel", Warns, "no mixture reaches down the neck"),
     ("quadrature", "arK", Refuses, "it has more than four parameters"),
     ("quadrature", "eight_schools", Refuses, "more than four parameters"),
@@ -185,7 +183,6 @@ fn conforms(target: &Target) {
         let found = run(entry, target);
         match (found, instead(entry.name, target.name)) {
             (Err(error), Some(Refuses)) if error.is_input() => {}
-            (Ok(_), Some(Silent)) => {}
             (Ok(found), Some(Warns)) => {
                 if alarm(&found).is_none() {
                     let complaints = complaints(&found, target);

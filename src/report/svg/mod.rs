@@ -10,6 +10,7 @@ mod boxes;
 pub(crate) mod canvas;
 mod curves;
 mod densities;
+mod histograms;
 mod matrix;
 mod pairs;
 pub(crate) mod palette;
@@ -21,6 +22,7 @@ mod track;
 
 pub use boxes::{Boxes, box_plots};
 pub use curves::{Curves, curves};
+pub use histograms::{Histogram, histograms};
 pub use matrix::{Matrix, matrix};
 pub use reliability::{Bin, reliability};
 
