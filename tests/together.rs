@@ -188,16 +188,16 @@ fn a_pooled_amplitude_is_the_common_one_where_nothing_spreads() {
         let a = likelihood(&a, &[&common, &own[..]].concat());
         let mut values = common.clone();
         if pooled.family() == Family::Physics {
-            values.extend([0.0, 0.7, -0.4]);
+            values.extend([1e-12, 0.7, -0.4]);
         }
         let with = With::new(&together, &[pooled.as_ref()]);
         let b = likelihood(&with, &[&values, &own[..]].concat());
-        assert!((a - b).abs() < 1e-9, "{}: {a} {b}", pooled.label());
+        assert!((a - b).abs() < 1e-6, "{}: {a} {b}", pooled.label());
         if pooled.family() == Family::Physics {
             let last = values.len() - 3;
             values[last] = 0.05;
             let c = likelihood(&with, &[&values, &own[..]].concat());
-            assert!((c - b).abs() > 1e-6, "{}", pooled.label());
+            assert!((c - b).abs() > 1e-4, "{}", pooled.label());
         }
     }
 }
