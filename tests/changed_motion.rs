@@ -182,7 +182,7 @@ fn hardening_is_as_steady_as_its_stairs_allow() {
     for axis in [Axis::Place, Axis::Time] {
         let range = match axis {
             Axis::Time => Range { begin: 0.0, span: 16.0 },
-            _ => Range { begin: 100.0, span: 300.0 },
+            _ => Range { begin: 100.0, span: 500.0 },
         };
         let along = move |s: f64, t: f64| {
             let x = if axis == Axis::Time { t } else { s };

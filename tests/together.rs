@@ -5,18 +5,18 @@
 
 use std::collections::BTreeMap;
 
-use couloir::change::Family;
+use couloir::change::{Family, Mechanism};
 use couloir::discrepancy::mechanisms::{FrictionPatch, find};
 use couloir::discrepancy::{Fit, Sharing, Together, fit};
 use couloir::draws::summarise;
 use couloir::infer::Peaks;
 use couloir::model::{Assembled, Point, Posterior, Program, With};
-use couloir::noise;
+use couloir::noise::{self, Iid, Noise};
 use couloir::physics::Track;
 use couloir::physics::friction::Laws;
 use couloir::prior::AnyPrior;
+use couloir::scalar::{Plain, Real};
 use couloir::{Event, Seed, Series};
-use rand_distr::{Distribution, StandardNormal};
 
 /// A slope with a patch of higher friction between 60 and 110 m of the common
 /// axis, released at some place on it; 50 values with errors of 0.3 m/s.
@@ -35,13 +35,11 @@ fn slide(name: &str, origin: f64, seed: u64) -> Assembled {
     let truth = [0.25, 0.09, 0.15, 60.0, 50.0];
     let states = patch(of(event(blank))).motion(&truth, &times).unwrap();
     let mut rng = Seed::new(seed).rng();
-    let values = states
-        .iter()
-        .map(|s| {
-            let z: f64 = StandardNormal.sample(&mut rng);
-            s.speed.value() + 0.3 * z
-        })
-        .collect();
+    let errors = Iid { sigma2: Real::<Plain>::new(0.09) };
+    let grid = couloir::noise::Grid::new(times.clone(), None);
+    let errors = errors.draw(&grid, &mut rng).unwrap();
+    let values = states.iter().zip(errors).map(|(s, e)| s.speed.value() + e);
+    let values = values.collect();
     of(event(Series::velocity(times, values).unwrap()))
 }
 
@@ -125,8 +123,7 @@ fn width(
     program: &impl Program,
     mechanism: &dyn couloir::change::Mechanism,
 ) -> (f64, f64) {
-    let from = vec![vec![0.0; 0]; 0];
-    let peaks = Peaks { starts: 200, from, ..Peaks::default() };
+    let peaks = Peaks { starts: 200, ..Peaks::default() };
     let found = fit(program, &[mechanism], &peaks, Seed::new(4)).unwrap();
     let delta = &summarise(&found.draws)[0];
     assert_eq!(delta.name, "friction-patch.delta_mu");
@@ -182,7 +179,7 @@ fn a_pooled_amplitude_is_the_common_one_where_nothing_spreads() {
     let shared = together.catalogue(Sharing::Shared);
     for (pooled, shared) in pooled.iter().zip(&shared) {
         assert_eq!(pooled.label(), shared.label());
-        let middle = |m: &dyn couloir::change::Mechanism| -> Vec<f64> {
+        let middle = |m: &dyn Mechanism| -> Vec<f64> {
             let unknowns = m.unknowns();
             unknowns.iter().map(|u| u.prior.quantile(0.6).unwrap()).collect()
         };
@@ -191,16 +188,16 @@ fn a_pooled_amplitude_is_the_common_one_where_nothing_spreads() {
         let a = likelihood(&a, &[&common, &own[..]].concat());
         let mut values = common.clone();
         if pooled.family() == Family::Physics {
-            values.extend([0.0, 0.7, -0.4]);
+            values.extend([1e-12, 0.7, -0.4]);
         }
         let with = With::new(&together, &[pooled.as_ref()]);
         let b = likelihood(&with, &[&values, &own[..]].concat());
-        assert!((a - b).abs() < 1e-9, "{}: {a} {b}", pooled.label());
+        assert!((a - b).abs() < 1e-6, "{}: {a} {b}", pooled.label());
         if pooled.family() == Family::Physics {
             let last = values.len() - 3;
             values[last] = 0.05;
             let c = likelihood(&with, &[&values, &own[..]].concat());
-            assert!((c - b).abs() > 1e-6, "{}", pooled.label());
+            assert!((c - b).abs() > 1e-4, "{}", pooled.label());
         }
     }
 }

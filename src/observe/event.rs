@@ -1,14 +1,17 @@
 //! An event: the ground, how the mass starts, and what was recorded.
 
+use std::borrow::Cow;
+
 use super::extent::path_length;
 use super::flow::Flow;
 use super::series::{Quantity, Series};
 use crate::change::Change;
 use crate::declared::Declared;
 use crate::error::{Error, Result, Stop};
+use crate::physics::forces::STEPS;
 use crate::physics::{
-    Friction, Path, Release, Rest, State, Track, rest, rest_changed, sample,
-    sample_changed,
+    Forces, Friction, Path, Release, Rest, State, Track, rest, rest_changed,
+    sample, sample_changed,
 };
 use crate::scalar::Kind;
 
@@ -240,7 +243,7 @@ impl Event {
         let release = self.release_changed(change);
         let path = self.path();
         let moments = || self.samples.iter().map(|&t| t - change.clock);
-        let forces = &change.forces;
+        let forces = &*self.forces(change);
         if change.window <= NO_WINDOW {
             return sample_changed(
                 &path,
@@ -285,7 +288,23 @@ impl Event {
         }
         let moments = times.iter().map(|&t| t - change.clock);
         let release = self.release_changed(change);
-        sample_changed(&path, law, &change.forces, release, moments, visit)
+        let forces = self.forces(change);
+        sample_changed(&path, law, &forces, release, moments, visit)
+    }
+
+    /// The forces of a change. Where none is added, nothing says how often a
+    /// law that varies with the speed has to be looked at: as often as under
+    /// a mechanism's force.
+    fn forces<'c, K: Kind>(
+        &self,
+        change: &'c Change<K>,
+    ) -> Cow<'c, Forces<K>> {
+        if change.forces.step.is_finite() {
+            return Cow::Borrowed(&change.forces);
+        }
+        let last = self.samples.last().copied().filter(|last| *last > 0.0);
+        let step = last.unwrap_or(1.0) / STEPS;
+        Cow::Owned(Forces { step, ..change.forces.clone() })
     }
 
     /// The release under a change.
@@ -308,7 +327,7 @@ impl Event {
             Some(change) if change.moves() => rest_changed(
                 &self.path(),
                 law,
-                &change.forces,
+                &self.forces(change),
                 self.release_changed(change),
             ),
             _ => rest(&self.path(), law, self.release()),
