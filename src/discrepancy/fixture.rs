@@ -256,7 +256,9 @@ pub(super) fn adequate() -> Diagnosis {
     d.selected.clear();
     d.group.clear();
     d.mechanisms.rotate_left(6);
-    for (m, p) in d.mechanisms.iter_mut().zip([0.97, 0.006, 0.004]) {
+    let rest = [0.0016; 12].into_iter();
+    let shares = [0.97, 0.006, 0.004].into_iter().chain(rest);
+    for (m, p) in d.mechanisms.iter_mut().zip(shares) {
         m.probability = p;
         m.log10_bayes_factor = if m.name == "none" { 0.0 } else { -0.7 };
     }

@@ -107,10 +107,15 @@ fn pictured(d: &Diagnosis, p: &Pictured, i: usize) -> Markup {
         true => format!("{what}: {}", plain(&p.event)),
         false => what.to_owned(),
     };
+    let place = if p.marked.is_empty() { "The track" } else { "Where" };
+    let prediction = match p.after.times.is_empty() {
+        true => "Recording and prediction",
+        false => "Recording and prediction, before and after",
+    };
     html! {
-        (section(&title("Where"), track(d, p, &format!("track-{i}"))))
+        (section(&title(place), track(d, p, &format!("track-{i}"))))
         (section(
-            &title("Recording and prediction, before and after"),
+            &title(prediction),
             recording(d, p, &format!("recording-{i}"))))
     }
 }

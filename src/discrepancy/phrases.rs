@@ -110,7 +110,10 @@ pub(super) fn model(b: &Baseline) -> String {
 /// The event's name in quotes, and whether nature made it.
 pub(super) fn event(d: &Diagnosis) -> String {
     let origin = if is_synthetic(d) { " (synthetic data)" } else { "" };
-    format!("“{}”{origin}", plain(&d.event))
+    match d.event.trim() {
+        "" => format!("the recording{origin}"),
+        name => format!("“{}”{origin}", plain(name)),
+    }
 }
 
 /// Whether the recording was computed: it says so in its name.

@@ -37,8 +37,13 @@ pub fn in_words(d: &Diagnosis) -> Vec<String> {
         said.extend(d.mismatch.iter().take(TOLD).map(|m| difference(d, m)));
         said.push(explanation(d));
         said.extend(sizes(d));
-        said.push(better(d));
-        said.extend(ahead(d));
+        if is_corrected(d) {
+            said.push(better(d));
+            said.extend(ahead(d));
+        } else {
+            said.push(uncorrected(d));
+            said.push(residuals(&d.baseline));
+        }
         said.extend(apart(d));
     }
     said.extend(trap(d));
@@ -55,7 +60,7 @@ fn verdict(d: &Diagnosis) -> String {
                 format!(" (probability {})", probability(m.probability))
             });
             format!(
-                "Nothing is missing: {model} explains the recording {event} \
+                "Nothing is missing: {model} explains {event} \
                  as well as anything in the catalogue{sure}."
             )
         }
@@ -92,9 +97,8 @@ fn difference(d: &Diagnosis, m: &Mismatch) -> String {
         matches!(d.verdict, Verdict::MissingPhysics | Verdict::Unexplained);
     let (be, more) = if real { ("is", "") } else { ("seems to be", "only ") };
     let end = match d.verdict {
-        _ if real => "",
         Verdict::Noise => "; errors of another kind do that without a force",
-        _ => "; the next sentence says why",
+        _ => "",
     };
     let size = m.specific_force.abs();
     let sense = if m.specific_force > 0.0 { "less" } else { "more" };
@@ -251,6 +255,15 @@ fn amount(p: &Told, mechanism: &str) -> String {
     format!("{name} = {middle} ({})", interval(p))
 }
 
+/// How the model fits that nothing was added to.
+fn uncorrected(d: &Diagnosis) -> String {
+    let rmse = significant(d.baseline.rmse, 2);
+    format!(
+        "Nothing is added to the model; its root mean square error is {}.",
+        with_unit(&rmse, recorded_in(d))
+    )
+}
+
 /// What adding it brings to the fit.
 fn better(d: &Diagnosis) -> String {
     let i = &d.improvement;
@@ -313,7 +326,11 @@ fn apart(d: &Diagnosis) -> Option<String> {
     }
     let group = all_called(d, &d.group, "and");
     let then = separating.map_or(String::new(), |s| format!(" {s}"));
-    Some(format!("This recording cannot tell {group} apart.{then}"))
+    let these = match d.pictured.len() {
+        0 | 1 => "This recording",
+        _ => "These recordings",
+    };
+    Some(format!("{these} cannot tell {group} apart.{then}"))
 }
 
 /// Whether correlated noise passes for what is missing.

@@ -59,9 +59,7 @@ fn row(canvas: &mut Canvas, axes: &Axes, d: &Diagnosis, m: &Judged, top: f64) {
     let base = top + 0.5 * ROW + 4.5;
     let name = shorten(&m.name, 20);
     if d.selected.contains(&m.name) {
-        // What is bold is to be told apart without the bar's colour.
-        let start = NAMES - 0.6 * FONT * name.chars().count() as f64;
-        canvas.heading((start.max(2.0), base), &name);
+        canvas.bold((NAMES, base), Anchor::End, &name);
     } else {
         canvas.text((NAMES, base), Anchor::End, INK, &name);
     }

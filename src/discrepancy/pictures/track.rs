@@ -87,13 +87,16 @@ fn mark(canvas: &mut Canvas, axes: &Axes, d: &Diagnosis, p: &Pictured) {
     let points: Vec<&Point> = whole.collect();
     let Some(&&(x, y)) = points.get(points.len() / 2) else { return };
     let text = range(m.place_from, m.place_to, "m");
-    let half = 0.5 * text_width(&text);
-    // Above the line, or below it where there is no room above.
-    let above = y - 16.0 > axes.frame.top + 12.0;
-    let y = if above { y - 16.0 } else { y + 26.0 };
-    let (low, high) = (axes.frame.left + half + 8.0, axes.frame.right - half);
-    let at = ((x + half).min(high).max(low), y);
-    canvas.text(at, Anchor::Middle, MASS, &text);
+    // Above the line, on the side to which it falls.
+    let rises = points[0].1 > points[points.len() - 1].1 + 1.0;
+    let room = text_width(&text) + 12.0;
+    let fits = x - room > axes.frame.left;
+    let (x, anchor) = match rises && fits {
+        true => (x - 10.0, Anchor::End),
+        false => (x.min(WIDTH - room) + 10.0, Anchor::Start),
+    };
+    let y = (y - 12.0).max(axes.frame.top + 12.0);
+    canvas.text((x, y), anchor, MASS, &text);
 }
 
 fn caption(p: &Pictured, stretched: f64) -> String {

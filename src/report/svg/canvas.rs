@@ -156,8 +156,13 @@ impl Canvas {
 
     /// A text in bold type.
     pub(crate) fn heading(&mut self, at: Point, text: &str) {
+        self.bold(at, Anchor::Start, text);
+    }
+
+    /// The same, fixed to its point as said.
+    pub(crate) fn bold(&mut self, at: Point, anchor: Anchor, text: &str) {
         let bold = " font-weight=\"600\"";
-        self.label(at, Anchor::Start, INK, bold, text);
+        self.label(at, anchor, INK, bold, text);
     }
 
     /// A text in the middle of a point, read from below to above.
