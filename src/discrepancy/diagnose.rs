@@ -16,6 +16,7 @@ use super::fit::Fit;
 use super::judge::{Odds, group, judge, told, verdict};
 use super::locate::{FreeForce, free_fit, locate};
 use super::mechanisms::catalogue;
+use super::paste::{declarations, model_text};
 use super::place::mismatch;
 use super::together::{Sharing, Together};
 use crate::change::{Family, Mechanism};
@@ -38,6 +39,8 @@ pub struct Options {
     pub friction: String,
     /// The noise's name: "ar(1)".
     pub noise: String,
+    /// Friction and errors as `model!` declares them, where that is known.
+    pub declarations: Option<[String; 2]>,
 }
 
 impl Options {
@@ -48,6 +51,7 @@ impl Options {
             odds: Odds::new(),
             friction: model.friction(),
             noise: model.noise(),
+            declarations: declarations(model),
         }
     }
 
@@ -169,7 +173,7 @@ impl<P: Program> Subject<'_, P> {
             _ => None,
         };
         let after = shown_after(chosen.as_ref(), free.as_ref(), all, seed);
-        let mut diagnosis = self.told(&found.none, after, seed)?;
+        let mut diagnosis = self.told(&found.none, after.as_ref(), seed)?;
         diagnosis.baseline.friction.clone_from(&options.friction);
         diagnosis.baseline.noise.clone_from(&options.noise);
         diagnosis.verdict = verdict;
@@ -180,7 +184,9 @@ impl<P: Program> Subject<'_, P> {
         diagnosis.mismatch =
             mismatch(verdict, &reaches, &forces, event, pictured);
         mark(&mut diagnosis, &self.events);
-        diagnosis.corrected = corrected(&chosen, all, options);
+        let quantity = diagnosis.pictured[0].quantity.clone();
+        diagnosis.corrected =
+            corrected(chosen.as_ref(), all, options, &quantity);
         diagnosis.separating = separating(&diagnosis.group, &judged);
         diagnosis.mechanisms = judged;
         diagnosis.forces = forces;
@@ -209,7 +215,7 @@ impl<P: Program> Subject<'_, P> {
     fn told(
         &self,
         none: &Fit,
-        after: Option<Shown<'_>>,
+        after: Option<&Shown<'_>>,
         seed: Seed,
     ) -> Result<Diagnosis> {
         let before = Shown {
@@ -219,11 +225,11 @@ impl<P: Program> Subject<'_, P> {
             rough: false,
         };
         let old = show(self.program, &self.events, &before)?;
-        let new = match &after {
+        let new = match after {
             Some(after) => show(self.program, &self.events, after)?,
             None => old.clone(),
         };
-        let fit = after.as_ref().map_or(none, |after| after.fit);
+        let fit = after.map_or(none, |after| after.fit);
         let names: Vec<&str> =
             self.events.iter().map(|event| event.name()).collect();
         let mut warnings = none.warnings.clone();
@@ -232,7 +238,7 @@ impl<P: Program> Subject<'_, P> {
         Ok(Diagnosis {
             event: names.join(" + "),
             baseline: baseline(none, &old, self.events[0]),
-            selected: after.iter().flat_map(Shown::names).collect(),
+            selected: after.map(Shown::names).unwrap_or_default(),
             improvement: improvement(none, fit, &old, &new),
             parameters: told(&summarise(&fit.draws), None)
                 .into_iter()
@@ -586,9 +592,10 @@ fn mark(diagnosis: &mut Diagnosis, events: &[&Event]) {
 
 /// The corrected model, written out.
 fn corrected(
-    chosen: &Option<Chosen>,
+    chosen: Option<&Chosen>,
     all: &[Box<dyn Mechanism>],
     options: &Options,
+    quantity: &str,
 ) -> Corrected {
     let mut equation =
         vec![format!("du/dt = g sin(theta) - r, r of {}", options.friction)];
@@ -606,7 +613,9 @@ fn corrected(
     }
     Corrected {
         equation,
-        model: super::paste::model_text(&mechanisms, options),
+        model: options.declarations.as_ref().map_or_else(String::new, |own| {
+            model_text(&mechanisms, own, quantity)
+        }),
         labels: mechanisms.iter().map(|m| m.label()).collect(),
     }
 }

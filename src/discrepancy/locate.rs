@@ -257,7 +257,7 @@ pub fn locate<P: Program>(
         .into_iter()
         .flatten()
         .collect();
-    force(nodes, baseline, extent, axis, seed)
+    force(&nodes, baseline, extent, axis, seed)
 }
 
 /// The middle of the i-th of so many even parts of 0..1.
@@ -279,7 +279,7 @@ fn node<P: Program>(
 
 /// Draws of the force from all nodes, and what they say.
 fn force(
-    nodes: Vec<Node>,
+    nodes: &[Node],
     baseline: f64,
     extent: &Extent,
     axis: Axis,
@@ -290,7 +290,7 @@ fn force(
     let all = (LENGTHS * SIZES) as f64;
     let mut rng = seed.rng();
     let mut draws = Vec::with_capacity(DRAWS);
-    for node in &nodes {
+    for node in nodes {
         let share = (node.log_weight - top).exp() / total;
         let count = (share * DRAWS as f64).round() as usize;
         for line in normal_draws(&node.peak, count, &mut rng) {

@@ -1,17 +1,103 @@
 //! The corrected model as Rust to paste.
 
-use super::diagnose::Options;
+use std::fmt::Write as _;
+
 use crate::change::Mechanism;
+use crate::model::Assembled;
+use crate::physics::friction::LAWS;
+use crate::prior::AnyPrior;
+
+/// The blocks of a model as `model!` declares them: friction, then errors.
+/// `None` where a law is not one of the crate's own.
+pub(super) fn declarations(model: &Assembled) -> Option<[String; 2]> {
+    let mut priors = model.priors().map(|(_, prior)| *prior);
+    let friction = model.friction();
+    let terms = friction
+        .split(" + ")
+        .map(|name| {
+            let law = LAWS.iter().find(|law| law.name() == name)?;
+            let fields = law
+                .fields()
+                .iter()
+                .map(|f| Some(format!("{}: {}", f.name, rust(priors.next()?))))
+                .collect::<Option<Vec<_>>>()?;
+            Some(format!("{} {{ {} }}", camel(name), fields.join(", ")))
+        })
+        .collect::<Option<Vec<_>>>()?;
+    let noise = model.noise();
+    let errors = match noise.split('(').next()? {
+        "ar" => {
+            let rest: Vec<String> = priors
+                .by_ref()
+                .take(model.noise_dimension())
+                .map(rust)
+                .collect();
+            let (sigma2, phi) = rest.split_last()?;
+            format!("Ar {{ phi: [{}], sigma2: {sigma2} }}", phi.join(", "))
+        }
+        "student" => {
+            let (dof, scale) = (rust(priors.next()?), rust(priors.next()?));
+            format!("Student {{ dof: {dof}, scale: {scale} }}")
+        }
+        _ => format!("Iid {{ sigma2: {} }}", rust(priors.next()?)),
+    };
+    Some([terms.join(" + "), errors])
+}
+
+/// "velocity-weakening" as the struct is called.
+fn camel(name: &str) -> String {
+    let word = |word: &str| {
+        let mut letters = word.chars();
+        let first = letters.next().map(|c| c.to_ascii_uppercase());
+        first.into_iter().chain(letters).collect::<String>()
+    };
+    name.split('-').map(word).collect()
+}
+
+/// A prior as Rust has it: numbers with a point.
+fn rust(prior: AnyPrior) -> String {
+    let arguments: Vec<String> =
+        prior.arguments().iter().map(|x| format!("{x:?}")).collect();
+    format!("{}({})", prior.name(), arguments.join(", "))
+}
 
 /// A program with the model and the mechanisms added to it.
 pub(super) fn model_text(
     mechanisms: &[&dyn Mechanism],
-    options: &Options,
+    blocks: &[String; 2],
+    quantity: &str,
 ) -> String {
-    let _ = options;
-    let mut text = String::new();
-    for mechanism in mechanisms {
-        text.push_str(&format!("// {}\n", mechanism.formula()));
+    let [friction, errors] = blocks;
+    let mut text = format!(
+        "use couloir::discrepancy::mechanisms::find;\n\
+         use couloir::model::With;\n\
+         use couloir::prelude::*;\n\n\
+         model! {{\n    struct Before {{ event: Event }}\n    \
+         friction ~ {friction};\n    errors ~ {errors};\n    \
+         likelihood {{\n        let flow = event.slide(&friction)?;\n        \
+         event.{quantity} ~ flow.{quantity}() + errors;\n    }}\n}}\n\n\
+         fn log_evidence(event: Event) -> Result<Option<f64>> {{\n    \
+         let extent = event.extent();\n    \
+         let before = Before::new(event);\n"
+    );
+    let mut names = Vec::new();
+    for (i, mechanism) in mechanisms.iter().enumerate() {
+        let label = mechanism.label();
+        // Writing to a text cannot fail.
+        let _ = writeln!(
+            text,
+            "    let added_{i} = find({label:?}, &extent, &[])?;"
+        );
+        names.push(format!("added_{i}.as_ref()"));
     }
+    let names = names.join(", ");
+    let _ = write!(
+        text,
+        "    let corrected = With::new(&before, &[{names}]);\n    \
+         let posterior = Posterior::new(&corrected)?;\n    \
+         let found = infer(&Smc::default(), &posterior, Seed::new(1), \
+         &Quiet)?;\n    \
+         Ok(found.evidence.map(|evidence| evidence.log))\n}}\n"
+    );
     text
 }

@@ -155,7 +155,7 @@ impl Backend for Peaks {
         let base = Base::Mixture(mixture);
         let particles = self.draws / 4;
         let smc = Smc { particles, moves: 3.0, ..Smc::default() };
-        smc.from_base(posterior, base, seed.child(100), progress)
+        smc.passage_of(posterior, base, seed.child(100), progress)
     }
 }
 

@@ -537,7 +537,7 @@ fn cholesky_factor(particles: &[Particle]) -> DMatrix<f64> {
 
 impl Smc {
     /// One passage from a base that is known.
-    pub(super) fn from_base(
+    pub(super) fn passage_of(
         &self,
         posterior: &Posterior<'_>,
         base: Base,

@@ -201,6 +201,12 @@ impl Assembled {
         self.mechanisms.iter().map(|(_, count)| count).sum()
     }
 
+    /// How many of the parameters are the noise's; they come after the
+    /// friction law's.
+    pub fn noise_dimension(&self) -> usize {
+        self.noise.parameters().len()
+    }
+
     /// How many of the parameters are the friction law's; they come first.
     pub fn friction_dimension(&self) -> usize {
         self.laws
