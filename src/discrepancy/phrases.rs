@@ -5,55 +5,64 @@ use crate::physics::forces::Axis;
 use crate::report::digits::{beside, short, significant};
 use crate::report::text::{plain, unit};
 
+/// Mechanisms whose words are the same whatever their size.
+const NAMES: [(&str, &str); 18] = [
+    ("none", "the model as it was"),
+    ("unknown", "a force that no mechanism of the catalogue describes"),
+    ("turbulent-drag", "drag that grows with the square of the speed"),
+    ("viscous-drag", "drag in proportion to the speed"),
+    ("cohesion", "a constant resistance"),
+    ("velocity-weakening", "dry friction that falls with speed"),
+    ("curvature", "the load of the bends on the friction"),
+    ("entrainment", "entrainment of snow along a stretch"),
+    ("initial-velocity", "a start that was already moving"),
+    ("release-position", "a release at another place"),
+    ("clock-offset", "a clock that is off"),
+    ("velocity-scale", "a reading off by a constant factor"),
+    ("sensor-drift", "a sensor that drifts"),
+    ("averaging-window", "values that are means over a while"),
+    ("slope-bias", "a track whose slope is off"),
+    ("ar1", "errors correlated in time"),
+    ("heavy-tails", "outliers among the errors"),
+    ("unequal-variance", "errors of unequal size"),
+];
+
 /// A mechanism as a snow scientist would call it; the sign of its amplitude
 /// and along what it acts go into the words.
 pub(super) fn called(m: &Judged) -> String {
+    if let Some((_, words)) = NAMES.iter().find(|n| n.0 == m.name) {
+        return (*words).to_owned();
+    }
     let amount = m.parameters.first().map_or(f64::NAN, |p| p.q50);
-    let or = |more: &str, less: &str, open: &str| match amount {
-        x if x > 0.0 => more.to_owned(),
-        x if x < 0.0 => less.to_owned(),
-        _ => open.to_owned(),
+    let or = |more: &'static str, less: &'static str, open: &'static str| {
+        match amount {
+            x if x > 0.0 => more,
+            x if x < 0.0 => less,
+            _ => open,
+        }
     };
     let time = m.coordinate == Some(Axis::Time);
-    let step = if time { "from a moment on" } else { "beyond a place" };
-    let along = if time { "with time" } else { "with distance" };
-    let fixed = match m.name.as_str() {
-        "none" => "the model as it was",
-        "unknown" => "a force that no mechanism of the catalogue describes",
-        "turbulent-drag" => "drag that grows with the square of the speed",
-        "viscous-drag" => "drag in proportion to the speed",
-        "cohesion" => "a constant resistance",
-        "velocity-weakening" => "dry friction that falls with speed",
-        "curvature" => "the load of the bends on the friction",
-        "entrainment" => "entrainment of snow along a stretch",
-        "initial-velocity" => "a start that was already moving",
-        "release-position" => "a release at another place",
-        "clock-offset" => "a clock that is off",
-        "velocity-scale" => "a reading off by a constant factor",
-        "sensor-drift" => "a sensor that drifts",
-        "averaging-window" => "values that are means over a while",
-        "slope-bias" => "a track whose slope is off",
-        "ar1" => "errors correlated in time",
-        "heavy-tails" => "outliers among the errors",
-        "unequal-variance" => "errors of unequal size",
+    match m.name.as_str() {
         "friction-patch" => {
-            let how = or("higher", "lower", "other");
-            return format!("a patch of {how} friction");
+            format!("a patch of {} friction", or("higher", "lower", "other"))
         }
         "friction-step" => {
+            let step =
+                if time { "from a moment on" } else { "beyond a place" };
             let how = or("higher", "lower", "different");
-            return format!("friction that is {how} {step}");
+            format!("friction that is {how} {step}")
         }
         "friction-hardening" => {
+            let along = if time { "time" } else { "distance" };
             let how = or("rises", "falls", "changes");
-            return format!("friction that {how} steadily {along}");
+            format!("friction that {how} steadily with {along}")
         }
         "surge" => {
-            return or("a push", "a brake", "a force") + " that lasts a while";
+            let what = or("a push", "a brake", "a force");
+            format!("{what} that lasts a while")
         }
-        other => return format!("“{}”", plain(other)),
-    };
-    fixed.to_owned()
+        other => format!("“{}”", plain(other)),
+    }
 }
 
 /// The mechanism of that name, where it was weighed.
