@@ -36,16 +36,13 @@ fn times(last: f64) -> Vec<f64> {
 }
 
 /// Speeds under a law and forces.
-fn changed<K: Kind>(
+fn changed<K: couloir::physics::friction::LawKind>(
     track: &Track,
     law: &str,
     values: &[f64],
     forces: &Forces<K>,
     times: &[f64],
-) -> Vec<Real<K>>
-where
-    K: couloir::physics::friction::LawKind,
-{
+) -> Vec<Real<K>> {
     let law = Laws::default().parse(law).unwrap();
     let values: Vec<Real<K>> = values.iter().map(|&v| Real::new(v)).collect();
     let path = Path { track, depth: 1.3 };

@@ -26,6 +26,7 @@ use crate::infer::Progress;
 use crate::model::{Assembled, Program};
 use crate::observe::{Event, Extent};
 use crate::physics::forces::Axis;
+use crate::predict::Bands;
 use crate::seed::Seed;
 
 /// What to know of a model before it is diagnosed.
@@ -244,7 +245,7 @@ impl<P: Program> Subject<'_, P> {
                 .into_iter()
                 .filter(|p| !p.name.starts_with("unknown."))
                 .collect(),
-            pictured: pictured(&self.events, &old, &new),
+            pictured: pictured(&self.events, &old, &new, after.is_some()),
             warnings,
             ..Diagnosis::default()
         })
@@ -278,6 +279,7 @@ fn baseline(none: &Fit, old: &Figures, event: &Event) -> Baseline {
         shapiro_wilk_p: shapiro_wilk(&innovations),
         predictive_p: largest_p(&innovations),
         stationary_sd: stationary_sd(&none.draws),
+        innovation_sd: innovation_sd(&none.draws),
         instrument: instrument(event),
         ..Baseline::default()
     }
@@ -516,6 +518,7 @@ fn pictured(
     events: &[&Event],
     before: &Figures,
     after: &Figures,
+    corrected: bool,
 ) -> Vec<Pictured> {
     recordings(events)
         .into_iter()
@@ -530,7 +533,11 @@ fn pictured(
                 values: series.values().to_vec(),
                 places: after.places[i].clone(),
                 before: before.bands[i].clone(),
-                after: after.bands[i].clone(),
+                after: if corrected {
+                    after.bands[i].clone()
+                } else {
+                    Bands::default()
+                },
                 track: (x.to_vec(), z.to_vec()),
                 ..Pictured::default()
             }
@@ -559,6 +566,17 @@ fn stationary_sd(draws: &draws::Draws) -> Option<f64> {
         .iter()
         .map(|row| (row[sigma2] / (1.0 - row[phi].powi(2))).sqrt())
         .collect();
+    sds.sort_by(f64::total_cmp);
+    sds.get(sds.len() / 2).copied()
+}
+
+/// The sd of the innovations of AR(1) errors: the median.
+fn innovation_sd(draws: &draws::Draws) -> Option<f64> {
+    let names = draws.names();
+    names.iter().position(|n| n == "phi")?;
+    let sigma2 = names.iter().position(|n| n == "sigma2")?;
+    let mut sds: Vec<f64> =
+        rows_of(draws).iter().map(|row| row[sigma2].sqrt()).collect();
     sds.sort_by(f64::total_cmp);
     sds.get(sds.len() / 2).copied()
 }

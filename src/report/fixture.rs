@@ -43,6 +43,7 @@ pub(super) fn calibration() -> CalibrationReport {
         times.iter().zip(&errors).map(|(t, e)| speed(*t) + 2.0 * e).collect();
     let innovations = noise.ar1(0.0, 40);
     CalibrationReport {
+        mechanisms: Vec::new(),
         event: "Lautaret-like".to_owned(),
         friction: "voellmy".to_owned(),
         noise: "ar(1)".to_owned(),
