@@ -229,7 +229,7 @@ impl PerEvent {
             .zip(labels_of(&each, labels))
             .flat_map(|((_, mechanism), label)| {
                 let own = mechanism.unknowns().into_iter();
-                own.map(move |unknown| of_event(unknown, label))
+                own.map(move |unknown| of_event(&unknown, label))
             })
             .collect();
         (!each.is_empty()).then_some(Self { each, events, unknowns })
@@ -248,8 +248,8 @@ fn labels_of<'l>(
     each.iter().map(|(i, _)| label(*i)).collect()
 }
 
-fn of_event(unknown: Unknown, label: &str) -> Unknown {
-    Unknown { name: format!("{label}.{}", unknown.name), ..unknown }
+fn of_event(unknown: &Unknown, label: &str) -> Unknown {
+    Unknown { name: format!("{label}.{}", unknown.name), ..unknown.clone() }
 }
 
 /// What is said of a mechanism with others inside, it says by one of them.
@@ -340,7 +340,7 @@ impl Pooled {
         unknowns.extend(labels.iter().map(|label| {
             let prior = AnyPrior::Normal(0.0, 1.0);
             let name = "deviation".into();
-            of_event(Unknown { name, unit: "1", prior }, label)
+            of_event(&Unknown { name, unit: "1", prior }, label)
         }));
         Self { inner, unknowns, events: labels.len(), signed }
     }

@@ -204,7 +204,7 @@ impl<'a, K: Kind, L: Friction<K>> ChangedWalker<'a, K, L> {
         }
         self.ends = (self.begins + self.after).value();
         if let Some(moment) = moment
-            && !(self.ends <= moment.value())
+            && (self.ends > moment.value() || self.ends.is_nan())
         {
             self.pause(moment);
         }
@@ -294,7 +294,7 @@ impl<K: Kind, L: Friction<K>> Walker<K> for ChangedWalker<'_, K, L> {
 
     fn at_rest(&self) -> Option<Rest<K>> {
         let for_good = self.rests && self.border == Border::Nothing;
-        for_good.then(|| Rest { time: self.begins, distance: self.place })
+        for_good.then_some(Rest { time: self.begins, distance: self.place })
     }
 }
 

@@ -95,7 +95,7 @@ impl Range {
         } else {
             ((x + NEAR - self.begin) / step).floor() + 1.0
         };
-        (next < cells).then(|| self.begin + next * step)
+        (next < cells).then_some(self.begin + next * step)
     }
 }
 
