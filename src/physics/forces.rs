@@ -3,7 +3,7 @@
 //! A term is a [`Rate`] times a shape. Its stretch and its shape may have
 //! unknown edges, so pieces of the motion are cut at places and times that
 //! carry derivatives. A shape that changes steadily is a staircase of
-//! [`STEPS`] steps over the run: on each the motion keeps its exact solution.
+//! `STAIRS` steps over the run: on each the motion keeps its exact solution.
 
 use smallvec::SmallVec;
 
@@ -11,10 +11,13 @@ use super::friction::Rate;
 use crate::block::List;
 use crate::scalar::{Kind, Real};
 
-/// The stairs of a shape that changes steadily: with 100 of them, half a step
-/// of the largest change looked for is below 1 % of it, and alternates in
-/// sign.
+/// Into how many steps of time a run is cut for forces that vary with the
+/// speed.
 pub const STEPS: f64 = 100.0;
+
+/// The stairs of a shape that changes steadily: half a step of the largest
+/// change looked for is then 0.3 % of it, and alternates in sign.
+const STAIRS: f64 = 200.0;
 
 /// Places \[m\] and times \[s\] nearer than this are the same.
 const NEAR: f64 = 1e-9;
@@ -82,20 +85,27 @@ impl Range {
         ((x + NEAR - self.begin) / step).floor().clamp(0.0, cells - 1.0)
     }
 
-    /// The middle of that cell, as a distance from the beginning.
+    /// The middle of that cell, as a distance from the beginning; before the
+    /// range 0, beyond it the whole.
     fn stair(&self, x: f64) -> f64 {
-        (self.cell(x, STEPS) + 0.5) * self.span / STEPS
+        if x + NEAR < self.begin {
+            return 0.0;
+        }
+        if x + NEAR >= self.begin + self.span {
+            return self.span;
+        }
+        (self.cell(x, STAIRS) + 0.5) * self.span / STAIRS
     }
 
     /// The first border between cells beyond `x`.
     fn border(&self, x: f64, cells: f64) -> Option<f64> {
         let step = self.span / cells;
         let next = if x + NEAR < self.begin {
-            1.0
+            0.0
         } else {
             ((x + NEAR - self.begin) / step).floor() + 1.0
         };
-        (next < cells).then_some(self.begin + next * step)
+        (next <= cells).then_some(self.begin + next * step)
     }
 }
 
@@ -186,7 +196,7 @@ impl<K: Kind> Term<K> {
             Shape::Linear(of, range) | Shape::Saturating(of, range, _)
                 if *of == axis =>
             {
-                range.border(x, STEPS)
+                range.border(x, STAIRS)
             }
             Shape::Cells(of, range, values) if *of == axis => {
                 range.border(x, values.len() as f64)

@@ -1,0 +1,86 @@
+//! What was left out of a model is found in recordings of which that is
+//! known.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by it")]
+
+use std::path::{Path, PathBuf};
+
+use couloir::discrepancy::{Diagnosis, Options, Verdict, diagnose};
+use couloir::infer::Quiet;
+use couloir::io;
+use couloir::model::Assembled;
+use couloir::physics::friction::Laws;
+
+fn diagnosed(file: io::EventFile, friction: Option<&str>) -> Diagnosis {
+    let laws = Laws::default();
+    let friction = match friction {
+        Some(name) => laws.parse(name).unwrap(),
+        None => file.friction,
+    };
+    let model =
+        Assembled::new(file.event, friction, file.noise, &file.priors)
+            .unwrap();
+    let options = Options::of(&model, 1);
+    diagnose(&model, model.event(), &options, &Quiet).unwrap()
+}
+
+/// The car's mass [kg], frontal area [m2] and the air's density [kg/m3], by
+/// the report that the speeds are from.
+const CAR: (f64, f64, f64) = (1910.0, 2.15, 1.06);
+
+#[test]
+fn the_drag_of_the_air_is_found_in_the_coast_down() {
+    let file = io::coastdown(&Laws::default()).unwrap();
+    let found = diagnosed(file, Some("coulomb"));
+    assert_eq!(found.verdict, Verdict::MissingPhysics);
+    let best = &found.mechanisms[0];
+    assert_eq!(best.name, "turbulent-drag");
+    assert!(best.log10_bayes_factor > 50.0, "{}", best.log10_bayes_factor);
+    // r = (rho A c_d / 2 m) u^2. The report's own 0.348 has the head wind
+    // taken out; a model without wind gives about 0.40.
+    let (mass, area, density) = CAR;
+    let coefficient =
+        2.0 * mass * best.parameters[0].mean / (density * area);
+    assert!((0.385..0.425).contains(&coefficient), "{coefficient}");
+    let mu = found.parameters.iter().find(|p| p.name == "mu").unwrap();
+    assert!((0.0085..0.0100).contains(&mu.mean), "{}", mu.mean);
+}
+
+#[test]
+fn nothing_is_missing_once_the_drag_is_there_but_correlation() {
+    let file = io::coastdown(&Laws::default()).unwrap();
+    let found = diagnosed(file, None);
+    let total: f64 = found.mechanisms.iter().map(|m| m.probability).sum();
+    assert!((total - 1.0).abs() < 1e-9, "{total}");
+    let adequate = found.verdict == Verdict::Adequate;
+    assert_eq!(adequate, found.mismatch.is_empty());
+    assert!(found.mechanisms.iter().all(|m| m.name != "turbulent-drag"));
+}
+
+/// Real recordings that are not part of the project, where they are at hand.
+fn recordings() -> Option<PathBuf> {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../shared/recordings/falling-balls");
+    let at_hand = beside.is_dir();
+    if !at_hand {
+        println!("no recordings at {}: not run", beside.display());
+    }
+    at_hand.then_some(beside)
+}
+
+#[test]
+fn balls_that_fall_show_the_drag_of_the_air_where_it_is() {
+    let Some(folder) = recordings() else { return };
+    let laws = Laws::default();
+    let load = |ball: &str| io::load(&folder.join(ball), &laws).unwrap();
+    let drags = ["viscous-drag", "turbulent-drag"];
+    let has_drag = |found: &Diagnosis| {
+        found.selected.iter().any(|name| drags.contains(&name.as_str()))
+    };
+    for ball in ["tennis-1", "whiffle-2"] {
+        assert!(has_drag(&diagnosed(load(ball), None)), "{ball}");
+    }
+    // When the golf ball was let go is uncertain by a frame or more, and that
+    // is all that it takes.
+    assert!(!has_drag(&diagnosed(load("golf-1"), None)));
+}
