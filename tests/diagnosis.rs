@@ -17,9 +17,8 @@ fn diagnosed(file: io::EventFile, friction: Option<&str>) -> Diagnosis {
         Some(name) => laws.parse(name).unwrap(),
         None => file.friction,
     };
-    let model =
-        Assembled::new(file.event, friction, file.noise, &file.priors)
-            .unwrap();
+    let model = Assembled::new(file.event, friction, file.noise, &file.priors)
+        .unwrap();
     let options = Options::of(&model, 1);
     diagnose(&model, model.event(), &options, &Quiet).unwrap()
 }
@@ -39,8 +38,7 @@ fn the_drag_of_the_air_is_found_in_the_coast_down() {
     // r = (rho A c_d / 2 m) u^2. The report's own 0.348 has the head wind
     // taken out; a model without wind gives about 0.40.
     let (mass, area, density) = CAR;
-    let coefficient =
-        2.0 * mass * best.parameters[0].mean / (density * area);
+    let coefficient = 2.0 * mass * best.parameters[0].mean / (density * area);
     assert!((0.385..0.425).contains(&coefficient), "{coefficient}");
     let mu = found.parameters.iter().find(|p| p.name == "mu").unwrap();
     assert!((0.0085..0.0100).contains(&mu.mean), "{}", mu.mean);

@@ -349,6 +349,11 @@ fn simultaneous(draws: &[Vec<f64>], mean: &[f64], sd: &[f64]) -> f64 {
     largest[(0.9 * (largest.len() - 1) as f64) as usize]
 }
 
+/// A border between cells without its round-off: to a micrometre.
+fn tidy(x: f64) -> f64 {
+    (x * 1e6).round() / 1e6 + 0.0
+}
+
 /// A stretch of cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stretch {
@@ -369,7 +374,8 @@ impl FreeForce {
             if sign == 0.0 {
                 continue;
             }
-            let (from, to) = (self.at[i] - half, self.at[i] + half);
+            let (from, to) =
+                (tidy(self.at[i] - half), tidy(self.at[i] + half));
             match runs.last_mut() {
                 Some((before, run))
                     if *before == sign && from - run.to < half =>
@@ -389,7 +395,8 @@ impl FreeForce {
         let best = (0..CELLS)
             .max_by(|&a, &b| score(a).total_cmp(&score(b)))
             .unwrap_or(0);
-        Stretch { from: self.at[best] - half, to: self.at[best] + half }
+        let (from, to) = (self.at[best] - half, self.at[best] + half);
+        Stretch { from: tidy(from), to: tidy(to) }
     }
 
     fn step(&self) -> f64 {
