@@ -158,6 +158,16 @@ impl Mixture {
         Self { components }
     }
 
+    /// The components of both, either half of the weight.
+    #[must_use]
+    pub(super) fn beside(mut self, other: &Self) -> Self {
+        self.components.extend(other.components.iter().cloned());
+        for component in &mut self.components {
+            component.log_weight -= std::f64::consts::LN_2;
+        }
+        self
+    }
+
     /// Whether two more components than it has, up to `count`, did not help.
     fn few(&self, count: usize) -> bool {
         count >= self.components.len() + 2

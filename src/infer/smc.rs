@@ -37,13 +37,17 @@ pub struct Smc {
     pub keep: f64,
     /// How many accepted moves a particle makes on average after each step.
     pub moves: f64,
+    /// The most sweeps of moves after a step: those at the posterior go on
+    /// until the particles forget where they were.
+    pub sweeps: u64,
     /// Whether a second passage from a fitted mixture follows.
     pub refine: bool,
 }
 
 impl Default for Smc {
     fn default() -> Self {
-        Self { particles: 2000, keep: 0.6, moves: 5.0, refine: true }
+        let (particles, sweeps) = (2000, 60);
+        Self { particles, keep: 0.6, moves: 5.0, sweeps, refine: true }
     }
 }
 
@@ -69,9 +73,6 @@ const PRIOR_SHARE: f64 = 0.1;
 
 /// The most components of the second passage's base.
 const MOST_COMPONENTS: usize = 6;
-
-/// The most sweeps of moves after a step.
-const MOST_SWEEPS: u64 = 60;
 
 /// So little memory is none (500 particles have 0.05 of it by chance).
 const FORGOTTEN: f64 = 0.1;
@@ -347,7 +348,7 @@ impl<'p, 'm> Passage<'p, 'm> {
         let seed = self.seed.child(2 * self.steps + 1);
         let memory = Memory::of(self.places());
         let mut moved = 0.0;
-        for sweep in 0..MOST_SWEEPS {
+        for sweep in 0..self.smc.sweeps {
             let rate = self.sweep(&factor, seed.child(sweep))?;
             moved += rate;
             self.scale *= (0.6 * (rate - 0.25)).exp();
@@ -355,7 +356,7 @@ impl<'p, 'm> Passage<'p, 'm> {
             if often && self.temperature < 1.0 {
                 break;
             }
-            if often || sweep + 1 == MOST_SWEEPS {
+            if often || sweep + 1 == self.smc.sweeps {
                 self.memory = memory.left(self.places());
             }
             if often && self.memory.1 < FORGOTTEN {
@@ -474,7 +475,7 @@ impl Mover<'_, '_> {
 }
 
 /// The number of effective particles after a tempering step.
-fn effective(logs: &[f64], step: f64) -> f64 {
+pub(super) fn effective(logs: &[f64], step: f64) -> f64 {
     let once = super::log_sum_exp(logs.iter().map(|l| step * l));
     let twice = super::log_sum_exp(logs.iter().map(|l| 2.0 * step * l));
     (2.0 * once - twice).exp()
@@ -620,7 +621,7 @@ fn conclude(
              particles"
         ));
     }
-    warnings.extend(remembered(&draws, passage.memory));
+    warnings.extend(remembered(&draws, passage));
     Ok(Inference {
         draws: Some(draws),
         evidence: Some(Evidence { log, se, method: method.to_owned() }),
@@ -630,12 +631,13 @@ fn conclude(
 }
 
 /// A warning where particles do not forget where they were.
-fn remembered(draws: &Draws, memory: (usize, f64)) -> Option<String> {
-    let (parameter, much) = memory;
+fn remembered(draws: &Draws, passage: &Passage<'_, '_>) -> Option<String> {
+    let (parameter, much) = passage.memory;
+    let sweeps = passage.smc.sweeps;
     (much > REMEMBERED).then(|| {
         format!(
             "particles at one end of {} stay there (memory {much:.2} of 1 \
-             after {MOST_SWEEPS} sweeps): draws and evidence may miss narrow \
+             after {sweeps} sweeps): draws and evidence may miss narrow \
              places; compare with nuts, or write the model non-centred",
             draws.names()[parameter]
         )
