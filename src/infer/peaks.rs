@@ -73,9 +73,6 @@ const ROUNDS: u64 = 6;
 const WEIGHED: u64 = 2;
 /// The most components that a round adds.
 const ADDED: usize = 6;
-/// The most sweeps of tempering's last moves: what is drawn from the mixture
-/// is in every place already.
-const SWEEPS: u64 = 12;
 /// From how many of the best places on ridges climbs start.
 const BEST: usize = 8;
 /// Steps of a climb along a ridge, which begins nearby.
@@ -158,10 +155,7 @@ impl Backend for Peaks {
             }
             mixture = taught(&mixture, found, round, seed.child(2));
         }
-        let base = Base::Mixture(mixture);
-        let (particles, sweeps) = (self.draws / 4, SWEEPS);
-        let smc = Smc { particles, moves: 3.0, sweeps, ..Smc::default() };
-        smc.passage_of(posterior, base, seed.child(100), progress)
+        self.tempered(posterior, mixture, seed.child(100), progress)
     }
 }
 
@@ -183,6 +177,30 @@ impl Peaks {
         let scale = half * std::f64::consts::TAU.ln();
         let logs: Vec<f64> = parts.iter().map(|p| p.log + scale).collect();
         Ok(super::log_sum_exp(logs.iter().copied()))
+    }
+
+    /// Tempering from the mixture, and importance sampling from what that
+    /// found: its evidence is the sharper one where its weights are good.
+    fn tempered(
+        &self,
+        posterior: &Posterior<'_>,
+        mixture: Mixture,
+        seed: Seed,
+        progress: &dyn Progress,
+    ) -> Result<Inference> {
+        // What is drawn from the mixture is in every place already.
+        let (particles, forget) = (self.draws / 4, false);
+        let smc = Smc { particles, moves: 3.0, forget, ..Smc::default() };
+        let base = Base::Mixture(mixture);
+        let led = smc.passage_of(posterior, base, seed.child(0), progress)?;
+        let Some(draws) = &led.draws else { return Ok(led) };
+        let sampling = ImportanceSampling {
+            draws: 2 * self.draws,
+            ..ImportanceSampling::default()
+        };
+        let sampled =
+            sampling.from_draws(posterior, draws, seed.child(1), progress)?;
+        Ok(if sampled.warnings.is_empty() { sampled } else { led })
     }
 
     /// The parts of all peaks and ridges.

@@ -37,17 +37,17 @@ pub struct Smc {
     pub keep: f64,
     /// How many accepted moves a particle makes on average after each step.
     pub moves: f64,
-    /// The most sweeps of moves after a step: those at the posterior go on
-    /// until the particles forget where they were.
-    pub sweeps: u64,
+    /// Whether the moves at the posterior go on until the particles forget
+    /// where they were; if not, nothing tells of places that moves miss.
+    pub forget: bool,
     /// Whether a second passage from a fitted mixture follows.
     pub refine: bool,
 }
 
 impl Default for Smc {
     fn default() -> Self {
-        let (particles, sweeps) = (2000, 60);
-        Self { particles, keep: 0.6, moves: 5.0, sweeps, refine: true }
+        let (forget, refine) = (true, true);
+        Self { particles: 2000, keep: 0.6, moves: 5.0, forget, refine }
     }
 }
 
@@ -73,6 +73,9 @@ const PRIOR_SHARE: f64 = 0.1;
 
 /// The most components of the second passage's base.
 const MOST_COMPONENTS: usize = 6;
+
+/// The most sweeps of moves after a step.
+const MOST_SWEEPS: u64 = 60;
 
 /// So little memory is none (500 particles have 0.05 of it by chance).
 const FORGOTTEN: f64 = 0.1;
@@ -348,15 +351,15 @@ impl<'p, 'm> Passage<'p, 'm> {
         let seed = self.seed.child(2 * self.steps + 1);
         let memory = Memory::of(self.places());
         let mut moved = 0.0;
-        for sweep in 0..self.smc.sweeps {
+        for sweep in 0..MOST_SWEEPS {
             let rate = self.sweep(&factor, seed.child(sweep))?;
             moved += rate;
             self.scale *= (0.6 * (rate - 0.25)).exp();
             let often = sweep >= 2 && moved >= self.smc.moves;
-            if often && self.temperature < 1.0 {
+            if often && (self.temperature < 1.0 || !self.smc.forget) {
                 break;
             }
-            if often || sweep + 1 == self.smc.sweeps {
+            if self.smc.forget && (often || sweep + 1 == MOST_SWEEPS) {
                 self.memory = memory.left(self.places());
             }
             if often && self.memory.1 < FORGOTTEN {
@@ -633,11 +636,10 @@ fn conclude(
 /// A warning where particles do not forget where they were.
 fn remembered(draws: &Draws, passage: &Passage<'_, '_>) -> Option<String> {
     let (parameter, much) = passage.memory;
-    let sweeps = passage.smc.sweeps;
     (much > REMEMBERED).then(|| {
         format!(
             "particles at one end of {} stay there (memory {much:.2} of 1 \
-             after {sweeps} sweeps): draws and evidence may miss narrow \
+             after {MOST_SWEEPS} sweeps): draws and evidence may miss narrow \
              places; compare with nuts, or write the model non-centred",
             draws.names()[parameter]
         )
