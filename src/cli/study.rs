@@ -31,6 +31,33 @@ impl Subject {
         }
         Ok(model)
     }
+
+    /// The event's files with these mechanisms in its model, as far as they
+    /// apply to it.
+    pub(super) fn corrected(
+        &self,
+        laws: &Laws,
+        labels: &[String],
+    ) -> Result<Vec<(&'static str, String)>> {
+        let (friction, noise) = (self.friction.clone(), self.noise.clone());
+        let file = self.load(laws)?;
+        let priors = file.priors.clone();
+        let own = Some(Vec::new());
+        let plain =
+            assemble(file, laws, friction.clone(), noise.clone(), own)?;
+        let (extent, blocks) = (plain.event().extent(), plain.blocks());
+        let found: Vec<_> = labels
+            .iter()
+            .filter_map(|label| find(label, &extent, &blocks).ok())
+            .collect();
+        let mechanisms = found.iter().map(|m| m.label()).collect();
+        let model = plain.with_mechanisms(found, &priors)?;
+        let unused = model.unused(&priors);
+        let unused = unused.into_iter().map(str::to_owned).collect();
+        let correction =
+            io::Correction { friction, noise, mechanisms, unused };
+        io::corrected(self.event.as_deref(), &correction)
+    }
 }
 
 /// A model of an event's own laws, noise and mechanisms, or of others by

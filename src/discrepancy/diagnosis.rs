@@ -5,6 +5,8 @@ use std::f64::consts::LN_10;
 use serde_json::{Map, Value, json};
 
 use super::locate::FreeForce;
+use crate::change::Noun;
+use crate::draws::Draws;
 use crate::physics::forces::Axis;
 use crate::predict::Bands;
 
@@ -33,6 +35,9 @@ pub struct Diagnosis {
     pub parameters: Vec<Told>,
     /// The corrected model, written out.
     pub corrected: Corrected,
+    /// Its posterior draws; those of the model as it was where nothing is
+    /// added.
+    pub draws: Option<Draws>,
     /// The free-form force over distance, over time, and over speed.
     pub forces: Vec<FreeForce>,
     /// The recordings with what both models predict.
@@ -50,6 +55,8 @@ pub struct Baseline {
     pub friction: String,
     /// The noise.
     pub noise: String,
+    /// The labels of the mechanisms that it had already.
+    pub mechanisms: Vec<String>,
     /// ln p(recording | model).
     pub log_evidence: f64,
     /// Of the posterior mean prediction, in the recording's unit.
@@ -80,7 +87,7 @@ pub enum Verdict {
     /// The start or the measurement is not as the model has it.
     Measurement,
     /// The errors are.
-    Noise,
+    Errors,
     /// Something that no mechanism describes.
     Unexplained,
 }
@@ -92,7 +99,7 @@ impl Verdict {
             Self::Adequate => "adequate",
             Self::MissingPhysics => "missing-physics",
             Self::Measurement => "measurement",
-            Self::Noise => "noise",
+            Self::Errors => "noise",
             Self::Unexplained => "unexplained",
         }
     }
@@ -153,6 +160,8 @@ pub struct Told {
 pub struct Judged {
     /// Its name; "none" for the model as it was.
     pub name: String,
+    /// What it is called in a sentence.
+    pub noun: Noun,
     /// Its kind: none, physics, start, measurement, noise, unknown.
     pub kind: &'static str,
     /// Its probability.
@@ -314,6 +323,7 @@ impl Diagnosis {
             "event": self.event,
             "baseline": {
                 "friction": b.friction, "noise": b.noise,
+                "mechanisms": b.mechanisms,
                 "log_evidence": b.log_evidence, "rmse": b.rmse,
                 "ljung_box_p": b.ljung_box_p,
                 "shapiro_wilk_p": b.shapiro_wilk_p,

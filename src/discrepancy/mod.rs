@@ -5,6 +5,8 @@ pub mod mechanisms;
 
 mod attribute;
 mod before_and_after;
+mod check;
+mod choose;
 mod diagnose;
 mod diagnosis;
 mod fit;
@@ -12,6 +14,7 @@ mod fit;
 mod fixture;
 mod judge;
 mod locate;
+mod options;
 mod page;
 mod paste;
 mod phrases;
@@ -24,7 +27,7 @@ mod together;
 mod words;
 
 pub use attribute::{Attribution, attribute, pair};
-pub use diagnose::{Options, diagnose, diagnose_together};
+pub use diagnose::{diagnose, diagnose_together};
 pub use diagnosis::{
     Baseline, Corrected, Diagnosis, Improvement, Judged, Mismatch, Pair,
     Pictured, Told, Verdict,
@@ -32,6 +35,7 @@ pub use diagnosis::{
 pub use fit::{Fit, fit};
 pub use judge::Odds;
 pub use locate::{CELLS, FreeForce, locate};
+pub use options::Options;
 pub use page::page;
 pub use summary::summary;
 pub use together::{PerEvent, Pooled, Sharing, Together};

@@ -55,7 +55,7 @@ fn verdict(d: &Diagnosis) -> String {
     let (model, event) = (model(&d.baseline), event(d));
     match d.verdict {
         Verdict::Adequate => {
-            let sure = d.mechanisms.iter().find(|m| m.name == "none");
+            let sure = d.mechanisms.iter().find(|m| m.kind == "none");
             let sure = sure.map_or(String::new(), |m| {
                 format!(" (probability {})", probability(m.probability))
             });
@@ -72,7 +72,7 @@ fn verdict(d: &Diagnosis) -> String {
              the model has it.",
             if of_start(d) { "start" } else { "measurement" }
         ),
-        Verdict::Noise => format!(
+        Verdict::Errors => format!(
             "No force is missing from {}: the errors of {event} are not {} \
              ones.",
             friction(&d.baseline),
@@ -97,7 +97,7 @@ fn difference(d: &Diagnosis, m: &Mismatch) -> String {
         matches!(d.verdict, Verdict::MissingPhysics | Verdict::Unexplained);
     let (be, more) = if real { ("is", "") } else { ("seems to be", "only ") };
     let end = match d.verdict {
-        Verdict::Noise => "; errors of another kind do that without a force",
+        Verdict::Errors => "; errors of another kind do that without a force",
         _ => "",
     };
     let size = m.specific_force.abs();
@@ -172,7 +172,7 @@ fn explanation(d: &Diagnosis) -> String {
         }
         [best] if d.selected.len() == 1 => format!(
             "{what} {} this (probability {}){}.",
-            verb(&what),
+            if best.noun.plural { "explain" } else { "explains" },
             probability(best.probability),
             rival(d)
         ),
@@ -191,20 +191,12 @@ fn explanation(d: &Diagnosis) -> String {
     }
 }
 
-fn verb(what: &str) -> &'static str {
-    let several = ["Errors", "Outliers", "Values"];
-    if several.iter().any(|w| what.starts_with(w)) {
-        "explain"
-    } else {
-        "explains"
-    }
-}
-
 fn unexplained(d: &Diagnosis) -> String {
-    let sure = judged(d, "unknown").map_or(String::new(), |m| {
+    let force = d.mechanisms.iter().find(|m| m.kind == "unknown");
+    let sure = force.map_or(String::new(), |m| {
         format!(" (probability {})", probability(m.probability))
     });
-    let named = |m: &&Judged| !matches!(m.name.as_str(), "unknown" | "none");
+    let named = |m: &&Judged| !matches!(m.kind, "unknown" | "none");
     let near = match d.mechanisms.iter().find(named) {
         Some(m) => format!(
             "; of the named ones {} comes nearest ({})",
@@ -340,7 +332,7 @@ fn trap(d: &Diagnosis) -> Option<String> {
     let units = recorded_in(d);
     let sd = with_unit(&significant(sd, 2), units);
     let end = match d.verdict {
-        Verdict::Adequate | Verdict::Noise => {
+        Verdict::Adequate | Verdict::Errors => {
             "noise of that size may have swallowed a mismatch, so this \
              verdict is weak"
         }
@@ -417,7 +409,7 @@ fn residuals(b: &Baseline) -> String {
 
 /// What would come next, where nothing is missing.
 fn nearest(d: &Diagnosis) -> Option<String> {
-    let others = || d.mechanisms.iter().filter(|m| m.name != "none");
+    let others = || d.mechanisms.iter().filter(|m| m.kind != "none");
     let m = others().next()?;
     Some(format!(
         "Of {} things that could be missing, the most probable is {} \
