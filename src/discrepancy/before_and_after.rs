@@ -2,8 +2,10 @@
 
 use std::f64::consts::LN_10;
 
+use super::check::stationary_sd;
 use super::diagnosis::{Improvement, Pair, Pictured};
 use super::fit::Fit;
+use super::least_squares::least_squares;
 use crate::change::Mechanism;
 use crate::draws::{Draws, uncorrelated_p};
 use crate::elpd::leave_one_out;
@@ -38,6 +40,8 @@ pub(super) struct Figures {
     pub(super) heldout_rmse: f64,
     pub(super) coverage90: f64,
     pub(super) ljung_box_p: f64,
+    pub(super) least_squares: f64,
+    pub(super) stationary_sd: f64,
     pub(super) innovations: Vec<Vec<f64>>,
     /// Of each recording.
     pub(super) bands: Vec<Bands>,
@@ -76,6 +80,11 @@ pub(super) fn show<P: Program>(
         heldout_rmse: held_out(program, shown, &values)?,
         coverage90: coverage(&bands, &values),
         ljung_box_p: uncorrelated(&found.innovations),
+        least_squares: match shown.rough {
+            true => f64::NAN,
+            false => least_squares(&posterior, shown.fit, &values)?,
+        },
+        stationary_sd: stationary_sd(draws).unwrap_or(f64::NAN),
         places: places
             .map(|((event, series), p)| places_of(event, series, p))
             .collect(),
@@ -228,6 +237,8 @@ pub(super) fn improvement(
         heldout_rmse: pair(|f| f.heldout_rmse),
         coverage90: pair(|f| f.coverage90),
         ljung_box_p: pair(|f| f.ljung_box_p),
+        least_squares: pair(|f| f.least_squares),
+        stationary_sd: pair(|f| f.stationary_sd),
     }
 }
 

@@ -40,7 +40,7 @@ fn largest_p(innovations: &[f64]) -> f64 {
 }
 
 /// The sd of AR(1) errors themselves, sqrt(sigma2/(1 - phi^2)): the median.
-fn stationary_sd(draws: &Draws) -> Option<f64> {
+pub(super) fn stationary_sd(draws: &Draws) -> Option<f64> {
     middle(draws, |phi, sigma2| (sigma2 / (1.0 - phi.powi(2))).sqrt())
 }
 

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::attribute::{Attribution, Known, extend, pair};
 use super::before_and_after::rows_of;
-use super::diagnosis::{Judged, Verdict};
+use super::diagnosis::{Judged, Rival, Verdict};
 use super::fit::Fit;
 use crate::change::{Family, Mechanism, Reach};
 use crate::draws::median;
@@ -19,14 +19,14 @@ use crate::seed::Seed;
 const RISE: f64 = 1.0;
 /// Of how many mechanisms all pairs are weighed.
 const BEST: usize = 5;
-/// A probability of `none` above which no pair is looked at.
-const SURE: f64 = 0.9;
 
 /// What was chosen to be added to the model.
 pub(super) struct Chosen {
     /// Which of the catalogue.
     which: Vec<usize>,
     pub(super) fit: Fit,
+    /// What would do nearly as well in its place, with ln of its evidence.
+    rivals: Vec<(Vec<usize>, f64)>,
 }
 
 /// The best pair with the best single mechanism in it, and the best without.
@@ -56,29 +56,87 @@ impl<P: Program> Choice<'_, P> {
         let best = self.best_variants();
         let Some(&first) = best.first() else { return Ok(None) };
         let fit = self.found.candidates[first].clone();
-        let single = Chosen { which: vec![first], fit };
-        let none = self.judged.iter().find(|m| m.name == "none");
-        if none.is_some_and(|m| m.probability > SURE) {
-            return Ok(Some(single));
-        }
+        let single = Chosen::new(vec![first], fit);
         let pairs = self.best_pair(&best, &single.fit)?;
         let two = match pairs.nested {
             Some(two) if rises(&two.fit, &single.fit) => two,
             _ => return Ok(Some(single.rivalled(pairs.other, self.all))),
         };
         let two = two.rivalled(pairs.other, self.all);
-        match self.best_third(&best, &two)? {
-            Some(three) if rises(&three.fit, &two.fit) => Ok(Some(three)),
-            _ => Ok(Some(two)),
-        }
+        let found = match self.best_third(&best, &two)? {
+            Some(three) if rises(&three.fit, &two.fit) => three,
+            _ => two,
+        };
+        self.exchanged(found).map(Some)
+    }
+
+    /// The same with a term of the physics exchanged where another has more
+    /// evidence in its place; those that have nearly as much are its rivals.
+    fn exchanged(&self, chosen: Chosen) -> Result<Chosen> {
+        let physics = self.physics();
+        let swaps: Vec<(usize, usize)> = (1..chosen.which.len())
+            .filter(|&k| physics.contains(&chosen.which[k]))
+            .flat_map(|k| physics.iter().map(move |&i| (k, i)))
+            .filter(|(_, i)| !chosen.which.contains(i))
+            .collect();
+        let fits = swaps
+            .into_par_iter()
+            .map(|(k, i)| self.exchange(&chosen, k, i))
+            .collect::<Result<Vec<_>>>()?;
+        let mut all: Vec<Chosen> = fits.into_iter().flatten().collect();
+        all.push(chosen);
+        all.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
+        let mut best = all.remove(0);
+        all.retain(|other| !rises(&best.fit, &other.fit));
+        let rivals = all.into_iter().map(|c| (c.which, c.fit.log_evidence));
+        best.rivals = rivals.collect();
+        Ok(best)
+    }
+
+    /// The chosen with another mechanism in the place of its k-th.
+    fn exchange(
+        &self,
+        chosen: &Chosen,
+        k: usize,
+        other: usize,
+    ) -> Result<Option<Chosen>> {
+        let mechanisms = chosen.mechanisms(self.all);
+        let counts = mechanisms.iter().map(|m| m.unknowns().len());
+        let counts: Vec<usize> = counts.collect();
+        let begin: usize = counts[..k].iter().sum();
+        let mut rest = chosen.fit.clone();
+        rest.best.drain(begin..begin + counts[k]);
+        rest.added -= counts[k];
+        let (mut kept, mut which) = (mechanisms, chosen.which.clone());
+        kept.remove(k);
+        which.remove(k);
+        which.push(other);
+        let known = Known { mechanisms: &kept, fit: &rest };
+        let added = (self.all[other].as_ref(), &self.found.candidates[other]);
+        let hurdle = chosen.fit.log_evidence - RISE * LN_10;
+        let seed = self.seed.child(7000 + (k * self.all.len() + other) as u64);
+        let fit = extend(self.program, &known, added, hurdle, seed)?;
+        Ok(fit.map(|fit| Chosen::new(which, fit)))
+    }
+
+    /// The best variants of the physics with the most evidence.
+    fn physics(&self) -> Vec<usize> {
+        let is_physics = |m: &&Judged| m.kind == Family::Physics.name();
+        self.best_of(self.judged.iter().filter(is_physics))
     }
 
     /// The best variant of each of the best names, most probable first.
     fn best_variants(&self) -> Vec<usize> {
+        self.best_of(self.judged.iter())
+    }
+
+    fn best_of<'j>(
+        &self,
+        judged: impl Iterator<Item = &'j Judged>,
+    ) -> Vec<usize> {
         let all = self.all;
         let evidence = |i: &usize| self.found.candidates[*i].log_evidence;
-        self.judged
-            .iter()
+        judged
             .filter(|m| all.iter().any(|one| one.name() == m.name))
             .take(BEST)
             .filter_map(|m| {
@@ -102,7 +160,7 @@ impl<P: Program> Choice<'_, P> {
                 let mechanisms = [all[a].as_ref(), all[b].as_ref()];
                 let fits = [a, b].map(|i| &self.found.candidates[i]);
                 let fit = pair(self.program, mechanisms, fits, hurdle, seed)?;
-                Ok(fit.map(|fit| Chosen { which: vec![a, b], fit }))
+                Ok(fit.map(|fit| Chosen::new(vec![a, b], fit)))
             })
             .collect::<Result<Vec<_>>>()?;
         // A second term is added to the best one: a pair of two others that
@@ -131,7 +189,7 @@ impl<P: Program> Choice<'_, P> {
                 let added = (self.all[i].as_ref(), &self.found.candidates[i]);
                 let fit = extend(self.program, &known, added, hurdle, seed)?;
                 let which = [two.which.clone(), vec![i]].concat();
-                Ok(fit.map(|fit| Chosen { which, fit }))
+                Ok(fit.map(|fit| Chosen::new(which, fit)))
             })
             .collect::<Result<Vec<_>>>()?;
         Ok(most_evidence(fits))
@@ -139,6 +197,23 @@ impl<P: Program> Choice<'_, P> {
 }
 
 impl Chosen {
+    fn new(which: Vec<usize>, fit: Fit) -> Self {
+        Self { which, fit, rivals: Vec::new() }
+    }
+
+    /// What would do nearly as well, most evidence first.
+    pub(super) fn rivals(
+        &self,
+        all: &[Box<dyn Mechanism>],
+        none: &Fit,
+    ) -> Vec<Rival> {
+        let rival = |(which, log_evidence): &(Vec<usize>, f64)| Rival {
+            names: which.iter().map(|&i| all[i].name().to_owned()).collect(),
+            log10_bayes_factor: (log_evidence - none.log_evidence) / LN_10,
+        };
+        self.rivals.iter().map(rival).collect()
+    }
+
     /// The mechanisms themselves.
     pub(super) fn mechanisms<'a>(
         &self,
@@ -167,6 +242,9 @@ impl Chosen {
     }
 
     /// Where the mechanisms are confined to, by the medians of their edges.
+    ///
+    /// Of two modes of opposite sign (more friction here, or less everywhere
+    /// else) the more probable one counts: medians over both are nowhere.
     pub(super) fn reaches(&self, all: &[Box<dyn Mechanism>]) -> Vec<Reach> {
         let rows = rows_of(&self.fit.draws);
         let mut first = 0;
@@ -174,8 +252,11 @@ impl Chosen {
         for mechanism in self.mechanisms(all) {
             let own = first..first + mechanism.unknowns().len();
             first = own.end;
+            let up = rows.iter().filter(|row| row[own.start] > 0.0).count();
+            let sign = if 2 * up >= rows.len() { 1.0 } else { -1.0 };
             let edges: Vec<Reach> = rows
                 .iter()
+                .filter(|row| row[own.start] * sign >= 0.0)
                 .filter_map(|row| mechanism.reach(&row[own.clone()]))
                 .collect();
             let middle = |of: fn(&Reach) -> f64| {
@@ -201,24 +282,27 @@ fn most_evidence(fits: Vec<Option<Chosen>>) -> Option<Chosen> {
         .max_by(|a, b| a.fit.log_evidence.total_cmp(&b.fit.log_evidence))
 }
 
-/// Where the free-form force is more probable than any one mechanism, several
-/// together may still explain as much and say more: they do where their
-/// evidence is above that of the force.
+/// The verdict once combinations are weighed too.
+///
+/// Where two or three mechanisms together were chosen, a single one is out of
+/// the question, and what they say goes: physics where one of them is of the
+/// physics, though the best single mechanism may be another noise. Where the
+/// free-form force is more probable than any single mechanism, several
+/// together must have more evidence than the force.
 pub(super) fn explained(
     verdict: Verdict,
     chosen: Option<Chosen>,
     judged: &[Judged],
     all: &[Box<dyn Mechanism>],
 ) -> (Verdict, Option<Chosen>) {
-    if verdict != Verdict::Unexplained {
-        return (verdict, chosen);
-    }
     let unknown = judged.iter().find(|m| m.name == "unknown");
-    let Some((chosen, unknown)) = chosen.zip(unknown) else {
-        return (verdict, None);
+    let beyond = |c: &Chosen| {
+        verdict != Verdict::Unexplained
+            || unknown.is_some_and(|u| c.fit.log_evidence > u.log_evidence)
     };
-    if chosen.fit.log_evidence <= unknown.log_evidence {
-        return (verdict, None);
+    let Some(chosen) = chosen.filter(beyond) else { return (verdict, None) };
+    if chosen.which.len() == 1 && verdict != Verdict::Unexplained {
+        return (verdict, Some(chosen));
     }
     let families = chosen.mechanisms(all).into_iter().map(|m| m.family());
     let verdict = match families.min() {

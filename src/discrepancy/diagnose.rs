@@ -100,7 +100,10 @@ impl<P: Program> Subject<'_, P> {
             ..told
         };
         let (added, reaches) = match &chosen {
-            Some(chosen) => (chosen.mechanisms(all), chosen.reaches(all)),
+            Some(chosen) => {
+                diagnosis.rivals = chosen.rivals(all, &found.none);
+                (chosen.mechanisms(all), chosen.reaches(all))
+            }
             None => Default::default(),
         };
         let pictured = &diagnosis.pictured;

@@ -191,6 +191,8 @@ fn improvement() -> Improvement {
         heldout_rmse: pair(2.2, 0.35),
         coverage90: pair(0.5, 0.9),
         ljung_box_p: pair(1e-9, 0.4),
+        least_squares: pair(1.85, 0.30),
+        stationary_sd: pair(f64::NAN, f64::NAN),
     }
 }
 
@@ -245,6 +247,7 @@ pub(super) fn diagnosis() -> Diagnosis {
         mechanisms: mechanisms(),
         selected: vec!["friction-patch".to_owned()],
         group: vec!["friction-patch".to_owned()],
+        rivals: vec![],
         improvement: improvement(),
         separating: None,
         parameters: vec![

@@ -9,10 +9,10 @@ use argmin::solver::neldermead::NelderMead;
 use nalgebra::DVector;
 use rayon::prelude::*;
 
-use super::before_and_after::rmse;
 use super::fit::Fit;
 use crate::error::Result;
 use crate::model::{Point, Posterior};
+use crate::predict::rmse;
 
 /// How many searches start, each from a simplex of posterior draws.
 const SEARCHES: usize = 4;
@@ -45,8 +45,7 @@ impl CostFunction for Misfit<'_, '_> {
 }
 
 /// The least root mean square error of a fitted model's motion over all
-/// values, searched from its posterior draws; `None` where no draw has a
-/// flow.
+/// values, searched from its posterior draws; NaN where no draw has a flow.
 ///
 /// # Errors
 /// A model that fails.
@@ -54,7 +53,7 @@ pub(super) fn least_squares(
     posterior: &Posterior<'_>,
     fit: &Fit,
     values: &[Vec<f64>],
-) -> Result<Option<f64>> {
+) -> Result<f64> {
     let values = values.concat();
     let misfit = Misfit { posterior, values: &values };
     let corners = posterior.dimension() + 1;
@@ -67,7 +66,8 @@ pub(super) fn least_squares(
         .par_chunks_exact(corners)
         .filter_map(|simplex| descend(misfit, simplex))
         .collect();
-    Ok(searches.into_iter().filter(|e| *e < WALL).min_by(f64::total_cmp))
+    let flows = searches.into_iter().filter(|e| *e < WALL);
+    Ok(flows.fold(f64::NAN, f64::min))
 }
 
 /// Where Nelder and Mead's search from a simplex ends.
@@ -142,6 +142,6 @@ mod tests {
         let posterior = Posterior::new(&program).unwrap();
         let found = least_squares(&posterior, &fit, &[values]).unwrap();
         // The search ends where its corners differ by less than 1e-9.
-        assert!((found.unwrap() - expected).abs() < 1e-7, "{found:?}");
+        assert!((found - expected).abs() < 1e-7, "{found}");
     }
 }

@@ -13,6 +13,7 @@ mod fit;
 #[cfg(test)]
 mod fixture;
 mod judge;
+mod least_squares;
 mod locate;
 mod options;
 mod page;
@@ -30,7 +31,7 @@ pub use attribute::{Attribution, attribute, pair};
 pub use diagnose::{diagnose, diagnose_together};
 pub use diagnosis::{
     Baseline, Corrected, Diagnosis, Improvement, Judged, Mismatch, Pair,
-    Pictured, Told, Verdict,
+    Pictured, Rival, Told, Verdict,
 };
 pub use fit::{Fit, fit};
 pub use judge::Odds;

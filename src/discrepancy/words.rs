@@ -4,7 +4,9 @@ use super::phrases::{
     all_called, amounts, called, capital, event, friction, interval, judged,
     log10, model, own_name, probability, range, stretch, with_unit,
 };
-use super::{Baseline, Diagnosis, Judged, Mismatch, Pair, Told, Verdict};
+use super::{
+    Baseline, Diagnosis, Judged, Mismatch, Pair, Rival, Told, Verdict,
+};
 use crate::report::digits::{beside, p_value, per_cent, short, significant};
 use crate::report::text::{plain, unit};
 
@@ -177,7 +179,8 @@ fn explanation(d: &Diagnosis) -> String {
             rival(d)
         ),
         _ => format!(
-            "{what} explain this; alone, {}.",
+            "{what} explain this{}; alone, {}.",
+            instead(d),
             found
                 .iter()
                 .map(|m| format!(
@@ -189,6 +192,24 @@ fn explanation(d: &Diagnosis) -> String {
                 .join(" and ")
         ),
     }
+}
+
+/// What would do nearly as well as one of several selected.
+fn instead(d: &Diagnosis) -> String {
+    let Some(first) = d.rivals.first() else { return String::new() };
+    let given_up = d.selected.iter().find(|n| !first.names.contains(n));
+    let others = d.rivals.iter().flat_map(|rival| &rival.names);
+    let mut named: Vec<String> =
+        others.filter(|n| !d.selected.contains(n)).cloned().collect();
+    named.dedup();
+    named.truncate(TOLD);
+    given_up.map_or(String::new(), |given_up| {
+        format!(
+            ", and with {} instead of {} nearly as well",
+            all_called(d, &named, "or"),
+            all_called(d, std::slice::from_ref(given_up), "and"),
+        )
+    })
 }
 
 fn unexplained(d: &Diagnosis) -> String {
@@ -473,14 +494,19 @@ pub(super) fn before_and_after(d: &Diagnosis) -> Vec<Row> {
         x if x.is_finite() => format!("{x:.1}"),
         x => significant(x, 2),
     };
-    vec![
+    let mut rows = vec![
         row("log10 Bayes factor".to_owned(), evidence, log10),
         row(format!("RMSE{units}"), rmse, two),
+        row(format!("RMSE, least squares{units}"), i.least_squares, two),
         row(format!("RMSE, last 30 %{units}"), i.heldout_rmse, two),
         row("elpd (PSIS-LOO)".to_owned(), i.elpd, one),
         row("values in the 90 % band".to_owned(), i.coverage90, per_cent),
         row("Ljung-Box p".to_owned(), i.ljung_box_p, p_value),
-    ]
+    ];
+    if i.stationary_sd.before.is_finite() {
+        rows.push(row(format!("AR(1) sd{units}"), i.stationary_sd, two));
+    }
+    rows
 }
 
 /// The baseline's own figure, where nothing was corrected.
