@@ -4,9 +4,7 @@ use super::phrases::{
     all_called, amounts, called, capital, event, friction, interval, judged,
     log10, model, own_name, probability, range, stretch, with_unit,
 };
-use super::{
-    Baseline, Diagnosis, Judged, Mismatch, Pair, Rival, Told, Verdict,
-};
+use super::{Baseline, Diagnosis, Judged, Mismatch, Pair, Told, Verdict};
 use crate::report::digits::{beside, p_value, per_cent, short, significant};
 use crate::report::text::{plain, unit};
 
