@@ -214,6 +214,26 @@ impl Chosen {
         self.rivals.iter().map(rival).collect()
     }
 
+    /// Calls the chosen mechanisms by the signs that they have together: one
+    /// that pushes alone may brake beside another.
+    pub(super) fn call(
+        &self,
+        judged: &mut [Judged],
+        all: &[Box<dyn Mechanism>],
+    ) {
+        let rows = rows_of(&self.fit.draws);
+        let mut first = 0;
+        for mechanism in self.mechanisms(all) {
+            let amplitudes = rows.iter().map(|row| row[first]);
+            let amplitude = median(&amplitudes.collect::<Vec<_>>());
+            first += mechanism.unknowns().len();
+            let named = judged.iter_mut().find(|m| m.name == mechanism.name());
+            if let Some(named) = named {
+                named.noun = mechanism.noun(amplitude);
+            }
+        }
+    }
+
     /// The mechanisms themselves.
     pub(super) fn mechanisms<'a>(
         &self,

@@ -80,13 +80,16 @@ impl<P: Program> Subject<'_, P> {
         let found = attribute(program, all, seed.child(0), progress)?;
         progress.begin("locating the mismatch", None);
         let forces = self.locate(&found, seed)?;
-        let judged = judge(&found, all, &forces, &options.odds);
+        let mut judged = judge(&found, all, &forces, &options.odds);
         let verdict = verdict(&judged);
         progress.begin("weighing pairs", None);
         let choice =
             Choice { program, all, found: &found, judged: &judged, seed };
         let chosen = choice.choose(verdict)?;
         let (verdict, chosen) = explained(verdict, chosen, &judged, all);
+        if let Some(chosen) = &chosen {
+            chosen.call(&mut judged, all);
+        }
         progress.begin("showing", None);
         let free = self.free_form(verdict, &forces, &found.none, seed)?;
         let after = shown_after(chosen.as_ref(), free.as_ref(), all, seed);
