@@ -19,7 +19,7 @@ const PRINTED: &str = include_str!("data/corrected/model.rs");
 mod printed {
     include!("data/corrected/model.rs");
 
-    pub fn of(event: couloir::Event) -> Result<Option<Evidence>> {
+    pub(crate) fn of(event: couloir::Event) -> Result<Option<Evidence>> {
         evidence(event)
     }
 }

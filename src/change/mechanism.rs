@@ -54,8 +54,7 @@ pub struct Unknown {
     pub prior: AnyPrior,
 }
 
-/// What something is called in a sentence, without an article before it where
-/// it stands in the plural: "a clock that is off".
+/// What something is called in a sentence: "a clock that is off".
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Noun {
     /// The words.

@@ -158,7 +158,9 @@ fn corrected(
     found: &Diagnosis,
     laws: &Laws,
 ) -> Result<Folders> {
-    if found.corrected.labels.is_empty() {
+    let had = found.baseline.mechanisms.len();
+    let added = found.corrected.labels.get(had..).unwrap_or_default();
+    if added.is_empty() {
         return Ok(Vec::new());
     }
     subjects
@@ -167,7 +169,7 @@ fn corrected(
         .map(|(i, event)| {
             let mut folder = PathBuf::from("corrected");
             folder.extend(labels.get(i));
-            Ok((folder, event.corrected(laws, &found.corrected.labels)?))
+            Ok((folder, event.corrected(laws, added)?))
         })
         .collect()
 }

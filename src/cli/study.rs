@@ -32,26 +32,25 @@ impl Subject {
         Ok(model)
     }
 
-    /// The event's files with these mechanisms in its model, as far as they
-    /// apply to it.
+    /// The event's files with these mechanisms added to its model, as far as
+    /// they apply to it.
     pub(super) fn corrected(
         &self,
         laws: &Laws,
-        labels: &[String],
+        added: &[String],
     ) -> Result<Vec<(&'static str, String)>> {
         let (friction, noise) = (self.friction.clone(), self.noise.clone());
         let file = self.load(laws)?;
         let priors = file.priors.clone();
-        let own = Some(Vec::new());
-        let plain =
-            assemble(file, laws, friction.clone(), noise.clone(), own)?;
-        let (extent, blocks) = (plain.event().extent(), plain.blocks());
-        let found: Vec<_> = labels
+        let before =
+            assemble(file, laws, friction.clone(), noise.clone(), None)?;
+        let (extent, blocks) = (before.event().extent(), before.blocks());
+        let found = added
             .iter()
             .filter_map(|label| find(label, &extent, &blocks).ok())
             .collect();
-        let mechanisms = found.iter().map(|m| m.label()).collect();
-        let model = plain.with_mechanisms(found, &priors)?;
+        let model = before.with_mechanisms(found, &priors)?;
+        let mechanisms = model.labels();
         let unused = model.unused(&priors);
         let unused = unused.into_iter().map(str::to_owned).collect();
         let correction =

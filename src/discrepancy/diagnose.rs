@@ -95,29 +95,38 @@ impl<P: Program> Subject<'_, P> {
         let after = shown_after(chosen.as_ref(), free.as_ref(), all, seed);
         let told = self.told(&found.none, after.as_ref(), options, seed)?;
         let group = group(&judged);
+        let rivals = chosen.as_ref().map(|c| c.rivals(all, &found.none));
         let mut diagnosis = Diagnosis {
             verdict,
+            rivals: rivals.unwrap_or_default(),
             separating: separating(&group, &judged),
             group,
             mechanisms: judged,
             ..told
         };
-        let (added, reaches) = match &chosen {
-            Some(chosen) => {
-                diagnosis.rivals = chosen.rivals(all, &found.none);
-                (chosen.mechanisms(all), chosen.reaches(all))
-            }
-            None => Default::default(),
-        };
-        let pictured = &diagnosis.pictured;
-        diagnosis.mismatch =
-            mismatch(verdict, &reaches, &forces, &self.events, pictured);
-        diagnosis.corrected =
-            corrected(&added, options, &pictured[0].quantity);
-        mark(&mut diagnosis, &self.events);
+        self.write_out(&mut diagnosis, chosen.as_ref(), &forces, options);
         diagnosis.forces = forces;
         diagnosis.seconds = begun.elapsed().as_secs_f64();
         Ok(diagnosis)
+    }
+
+    /// Where the mismatch is, and what the corrected model is.
+    fn write_out(
+        &self,
+        diagnosis: &mut Diagnosis,
+        chosen: Option<&Chosen>,
+        forces: &[FreeForce],
+        options: &Options,
+    ) {
+        let all = &self.all[..];
+        let added = chosen.map(|c| c.mechanisms(all)).unwrap_or_default();
+        let reaches = chosen.map(|c| c.reaches(all)).unwrap_or_default();
+        let (verdict, pictured) = (diagnosis.verdict, &diagnosis.pictured);
+        let quantity = pictured.first().map_or("", |p| &p.quantity);
+        diagnosis.corrected = corrected(&added, options, quantity);
+        diagnosis.mismatch =
+            mismatch(verdict, &reaches, forces, &self.events, pictured);
+        mark(diagnosis, &self.events);
     }
 
     /// The fit of the likeliest free-form force, where nothing else explains

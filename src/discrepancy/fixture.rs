@@ -259,6 +259,7 @@ pub(super) fn diagnosis() -> Diagnosis {
             told("sigma2", "m2/s2", 0.096, 0.015),
         ],
         corrected: corrected(),
+        draws: None,
         forces: vec![
             force(Axis::Place, 260.0, 160.0, 44.0),
             force(Axis::Time, 18.0, 9.4, 41.5),
