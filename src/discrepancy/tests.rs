@@ -124,6 +124,8 @@ fn broken() -> Diagnosis {
         heldout_rmse: pair,
         coverage90: pair,
         ljung_box_p: pair,
+        least_squares: pair,
+        stationary_sd: pair,
     };
     for m in &mut d.mismatch {
         (m.from, m.to, m.time_from, m.place_to) = (nan, nan, nan, nan);

@@ -67,6 +67,9 @@ const ONE: f64 = 1.0;
 /// and the evidence is off by less than 0.1.
 const ENOUGH: f64 = 0.1;
 const AMPLE: f64 = 0.25;
+/// How far, in ln, two good rounds in a row may differ: weights alone do not
+/// tell of a tail that the mixture misses.
+const AGREED: f64 = 0.15;
 /// Rounds of importance sampling before tempering takes over: after a few
 /// that teach the weights alone, each adds components where the draws are.
 const ROUNDS: u64 = 6;
@@ -140,20 +143,25 @@ impl Backend for Peaks {
         posterior.require_proper("the mixture of peaks")?;
         let mut mixture = mixture(self.parts(posterior, seed.child(0))?)?;
         progress.begin("importance sampling", None);
+        let mut before = None;
         for round in 0..ROUNDS {
             let seed = seed.child(1 + round);
             let base = Base::Mixture(mixture.clone());
             let found =
                 population(posterior, &base, self.draws, seed.child(0))?;
             progress.advance(found.len() as u64);
-            if is_good(&found) {
+            let good = is_good(&found);
+            let log = log_mean_weight(&found);
+            if good && before.is_some_and(|b: f64| (b - log).abs() < AGREED) {
                 return ImportanceSampling::conclude(
                     posterior,
                     &found,
                     seed.child(1),
                 );
             }
-            mixture = taught(&mixture, found, round, seed.child(2));
+            before = good.then_some(log);
+            let adds = good || round >= WEIGHED;
+            mixture = taught(&mixture, found, adds, seed.child(2));
         }
         self.tempered(posterior, mixture, seed.child(100), progress)
     }
@@ -312,17 +320,22 @@ fn mixture(mut parts: Vec<Part>) -> Result<Mixture> {
 fn taught(
     mixture: &Mixture,
     found: Vec<Particle>,
-    round: u64,
+    adds: bool,
     seed: Seed,
 ) -> Mixture {
     let weights = cut(&found);
-    if round < WEIGHED {
+    if !adds {
         let places = found.iter().map(|p| p.z.as_slice());
         return mixture.reweighted(places.zip(weights));
     }
     let places: Vec<Vec<f64>> = found.into_iter().map(|p| p.z).collect();
     let added = Mixture::fit(&places, &weights, ADDED, &mut seed.rng());
     added.map_or_else(|| mixture.clone(), |added| added.beside(mixture))
+}
+
+fn log_mean_weight(found: &[Particle]) -> f64 {
+    let logs = found.iter().map(Particle::log_weight);
+    super::log_sum_exp(logs) - (found.len() as f64).ln()
 }
 
 fn is_good(found: &[Particle]) -> bool {
