@@ -268,3 +268,41 @@ fn warn(k: f64, effective: f64, n: f64) -> Vec<String> {
     }
     warnings
 }
+
+#[cfg(test)]
+mod tests {
+    use statrs::distribution::{ContinuousCDF, Normal};
+
+    use super::*;
+    use crate::error::Outcome;
+    use crate::model::{Label, Number, Program, Run};
+    use crate::prior::{self, AnyPrior};
+    use crate::scalar::Real;
+
+    /// a ~ N(0, 1), and 0 ~ N(a, 1) was seen: a is N(0, 1/2) after.
+    struct Seen;
+
+    impl Program for Seen {
+        fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
+            let before = AnyPrior::Normal(0.0, 1.0);
+            let a = run.scalar(Label::new("a", "1"), before)?;
+            run.observe_each(&0.0, prior::Normal::new(a, Real::new(1.0)))
+        }
+    }
+
+    #[test]
+    fn draws_of_the_posterior_tell_the_error() {
+        let posterior = Posterior::new(&Seen).unwrap();
+        let after = Normal::new(0.0, 0.5_f64.sqrt()).unwrap();
+        let n = 10_000;
+        let quantile = |i| after.inverse_cdf((f64::from(i) + 0.5) / 1e4);
+        let rows: Vec<_> = (0..n).map(|i| vec![quantile(i)]).collect();
+        let given = placed(&posterior, &Base::Prior, &rows).unwrap();
+        // Z = N(0; 0, 2), and E_q[w^2] / Z^2 = 2 / sqrt(3) with the prior as
+        // q.
+        let log_evidence = -0.5 * (2.0 * std::f64::consts::TAU).ln();
+        let found = error_at(&given, log_evidence, 100);
+        let expected = ((2.0 / 3.0_f64.sqrt() - 1.0) / 100.0).sqrt();
+        assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
+    }
+}

@@ -461,3 +461,73 @@ fn draw_index(masses: &[f64], rng: &mut Rng) -> usize {
     }
     masses.len() - 1
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::seed::Seed;
+
+    /// A bent ridge: x ~ N(0, 1), y given x ~ N(2 x^2, 0.3^2).
+    fn bent(rng: &mut Rng) -> Vec<f64> {
+        let x: f64 = StandardNormal.sample(rng);
+        let error: f64 = StandardNormal.sample(rng);
+        vec![x, 2.0 * x * x + 0.3 * error]
+    }
+
+    fn log_bent(z: &[f64]) -> f64 {
+        let error = (z[1] - 2.0 * z[0] * z[0]) / 0.3;
+        -0.5 * (z[0] * z[0] + error * error)
+            - (2.0 * std::f64::consts::PI * 0.3).ln()
+    }
+
+    fn many(rng: &mut Rng) -> Vec<Vec<f64>> {
+        (0..2000).map(|_| bent(rng)).collect()
+    }
+
+    #[test]
+    fn components_are_added_where_it_is_too_low() {
+        let mut rng = Seed::new(1).rng();
+        let (draws, others) = (many(&mut rng), many(&mut rng));
+        let even = vec![1.0 / 2000.0; 2000];
+        let targets: Vec<f64> = draws.iter().map(|z| log_bent(z)).collect();
+        let before = Mixture::fit(&draws, &even, 2, &mut rng).unwrap();
+        let after = before.clone().mended(&draws, &even, &targets);
+        assert!(after.components() > before.components());
+        // The largest ratio at draws that neither has seen.
+        let largest = |mixture: &Mixture| {
+            let ratios =
+                others.iter().map(|z| log_bent(z) - mixture.log_density(z));
+            ratios.fold(f64::NEG_INFINITY, f64::max).exp()
+        };
+        assert!(largest(&after) < 0.2 * largest(&before));
+        // Still a density: the mean of p/q over its own draws is 1.
+        let n = 20_000;
+        let ratio = |_| {
+            let z = after.draw(&mut rng);
+            (log_bent(&z) - after.log_density(&z)).exp()
+        };
+        let ratios: Vec<f64> = (0..n).map(ratio).collect();
+        let mean = ratios.iter().sum::<f64>() / n as f64;
+        let square = ratios.iter().map(|r| r * r).sum::<f64>() / n as f64;
+        let se = ((square - mean * mean) / n as f64).sqrt();
+        assert!((mean - 1.0).abs() < 4.0 * se, "{mean} +- {se}");
+    }
+
+    #[test]
+    fn a_mixture_that_fits_is_left_as_it_is() {
+        let mut rng = Seed::new(2).rng();
+        let draw = |_| vec![StandardNormal.sample(&mut rng)];
+        let draws: Vec<Vec<f64>> = (0..2000).map(draw).collect();
+        let even = vec![1.0 / 2000.0; 2000];
+        let targets: Vec<f64> = draws
+            .iter()
+            .map(|z| -0.5 * (z[0] * z[0] + std::f64::consts::TAU.ln()))
+            .collect();
+        let mixture = Mixture::fit(&draws, &even, 2, &mut rng).unwrap();
+        let count = mixture.components();
+        assert_eq!(
+            mixture.mended(&draws, &even, &targets).components(),
+            count
+        );
+    }
+}
