@@ -41,7 +41,7 @@ const FAR: f64 = 30.0;
 
 #[test]
 fn evidences_repeat_within_three_tenths() {
-    for effect in ["friction-patch", "surge", "clock-offset"] {
+    for effect in ["friction-patch", "clock-offset"] {
         let all = cases(20, 8, Mix::One).unwrap();
         let case = all.iter().find(|c| c.truth.effect == effect).unwrap();
         let model = model_of(case);

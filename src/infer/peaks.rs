@@ -74,8 +74,6 @@ const AGREED: f64 = 0.15;
 /// that teach the weights alone, each adds components where the draws are.
 const ROUNDS: u64 = 6;
 const WEIGHED: u64 = 2;
-/// The most components that a round adds.
-const ADDED: usize = 6;
 /// From how many of the best places on ridges climbs start.
 const BEST: usize = 8;
 /// Steps of a climb along a ridge, which begins nearby.
@@ -161,7 +159,7 @@ impl Backend for Peaks {
             }
             before = good.then_some(log);
             let adds = good || round >= WEIGHED;
-            mixture = taught(&mixture, found, adds, seed.child(2));
+            mixture = taught(&mixture, found, adds);
         }
         self.tempered(posterior, mixture, seed.child(100), progress)
     }
@@ -317,20 +315,17 @@ fn mixture(mut parts: Vec<Part>) -> Result<Mixture> {
 
 /// What a round of draws teaches the mixture: how much each component holds,
 /// and later where components are missing.
-fn taught(
-    mixture: &Mixture,
-    found: Vec<Particle>,
-    adds: bool,
-    seed: Seed,
-) -> Mixture {
+fn taught(mixture: &Mixture, found: Vec<Particle>, adds: bool) -> Mixture {
     let weights = cut(&found);
     if !adds {
         let places = found.iter().map(|p| p.z.as_slice());
         return mixture.reweighted(places.zip(weights));
     }
+    let log = log_mean_weight(&found);
+    let targets: Vec<f64> =
+        found.iter().map(|p| p.log_target() - log).collect();
     let places: Vec<Vec<f64>> = found.into_iter().map(|p| p.z).collect();
-    let added = Mixture::fit(&places, &weights, ADDED, &mut seed.rng());
-    added.map_or_else(|| mixture.clone(), |added| added.beside(mixture))
+    mixture.clone().mended(&places, &weights, &targets)
 }
 
 fn log_mean_weight(found: &[Particle]) -> f64 {
