@@ -67,13 +67,12 @@ const ONE: f64 = 1.0;
 /// and the evidence is off by less than 0.1.
 const ENOUGH: f64 = 0.1;
 const AMPLE: f64 = 0.25;
-/// How far, in ln, two good rounds in a row may differ: weights alone do not
-/// tell of a tail that the mixture misses.
-const AGREED: f64 = 0.15;
 /// Rounds of importance sampling before tempering takes over: after a few
 /// that teach the weights alone, each adds components where the draws are.
 const ROUNDS: u64 = 6;
 const WEIGHED: u64 = 2;
+/// The most components that a round adds.
+const ADDED: usize = 6;
 /// From how many of the best places on ridges climbs start.
 const BEST: usize = 8;
 /// Steps of a climb along a ridge, which begins nearby.
@@ -141,25 +140,20 @@ impl Backend for Peaks {
         posterior.require_proper("the mixture of peaks")?;
         let mut mixture = mixture(self.parts(posterior, seed.child(0))?)?;
         progress.begin("importance sampling", None);
-        let mut before = None;
         for round in 0..ROUNDS {
             let seed = seed.child(1 + round);
             let base = Base::Mixture(mixture.clone());
             let found =
                 population(posterior, &base, self.draws, seed.child(0))?;
             progress.advance(found.len() as u64);
-            let good = is_good(&found);
-            let log = log_mean_weight(&found);
-            if good && before.is_some_and(|b: f64| (b - log).abs() < AGREED) {
+            if is_good(&found) {
                 return ImportanceSampling::conclude(
                     posterior,
                     &found,
                     seed.child(1),
                 );
             }
-            before = good.then_some(log);
-            let adds = good || round >= WEIGHED;
-            mixture = taught(&mixture, found, adds);
+            mixture = taught(&mixture, found, round, seed.child(2));
         }
         self.tempered(posterior, mixture, seed.child(100), progress)
     }
@@ -315,22 +309,20 @@ fn mixture(mut parts: Vec<Part>) -> Result<Mixture> {
 
 /// What a round of draws teaches the mixture: how much each component holds,
 /// and later where components are missing.
-fn taught(mixture: &Mixture, found: Vec<Particle>, adds: bool) -> Mixture {
+fn taught(
+    mixture: &Mixture,
+    found: Vec<Particle>,
+    round: u64,
+    seed: Seed,
+) -> Mixture {
     let weights = cut(&found);
-    if !adds {
+    if round < WEIGHED {
         let places = found.iter().map(|p| p.z.as_slice());
         return mixture.reweighted(places.zip(weights));
     }
-    let log = log_mean_weight(&found);
-    let targets: Vec<f64> =
-        found.iter().map(|p| p.log_target() - log).collect();
     let places: Vec<Vec<f64>> = found.into_iter().map(|p| p.z).collect();
-    mixture.clone().mended(&places, &weights, &targets)
-}
-
-fn log_mean_weight(found: &[Particle]) -> f64 {
-    let logs = found.iter().map(Particle::log_weight);
-    super::log_sum_exp(logs) - (found.len() as f64).ln()
+    let added = Mixture::fit(&places, &weights, ADDED, &mut seed.rng());
+    added.map_or_else(|| mixture.clone(), |added| added.beside(mixture))
 }
 
 fn is_good(found: &[Particle]) -> bool {
