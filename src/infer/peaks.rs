@@ -78,6 +78,10 @@ const BEST: usize = 8;
 /// Steps of a climb along a ridge, which begins nearby.
 const FEW: usize = 8;
 
+/// The best that a place of a ridge allows: where, which coordinates were
+/// held, and how far the next places lie along them.
+type Along<'r> = (Peak, &'r Range<usize>, &'r [f64]);
+
 /// A normal approximation of a part of the posterior.
 struct Part {
     /// About what it holds, in ln.
@@ -222,7 +226,7 @@ impl Peaks {
     fn peaks(
         &self,
         posterior: &Posterior<'_>,
-        ridges: &[(Peak, &Range<usize>, &[f64])],
+        ridges: &[Along<'_>],
         seed: Seed,
     ) -> Result<Vec<Peak>> {
         let mut starts = self.from.clone();
@@ -256,7 +260,7 @@ impl Peaks {
     fn along_ridges(
         &self,
         posterior: &Posterior<'_>,
-    ) -> Result<Vec<(Peak, &Range<usize>, &[f64])>> {
+    ) -> Result<Vec<Along<'_>>> {
         let places: Vec<_> = self
             .ridges
             .iter()
