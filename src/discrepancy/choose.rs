@@ -15,7 +15,8 @@ use crate::model::Program;
 use crate::seed::Seed;
 
 /// In log10: by how much a pair must beat the best single mechanism, and a
-/// third one the pair.
+/// third one the pair, besides what a further term costs beforehand; and how
+/// near a rival comes.
 const RISE: f64 = 1.0;
 /// Of how many mechanisms all pairs are weighed.
 const BEST: usize = 5;
@@ -59,12 +60,12 @@ impl<P: Program> Choice<'_, P> {
         let single = Chosen::new(vec![first], fit);
         let pairs = self.best_pair(&best, &single.fit)?;
         let two = match pairs.nested {
-            Some(two) if rises(&two.fit, &single.fit) => two,
-            _ => return Ok(Some(single.rivalled(pairs.other, self.all))),
+            Some(two) if self.rises(&two.fit, &single.fit) => two,
+            _ => return Ok(Some(self.rivalled(single, pairs.other))),
         };
-        let two = two.rivalled(pairs.other, self.all);
+        let two = self.rivalled(two, pairs.other);
         let found = match self.best_third(&best, &two)? {
-            Some(three) if rises(&three.fit, &two.fit) => three,
+            Some(three) if self.rises(&three.fit, &two.fit) => three,
             _ => two,
         };
         self.exchanged(found).map(Some)
@@ -87,7 +88,8 @@ impl<P: Program> Choice<'_, P> {
         all.push(chosen);
         all.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
         let mut best = all.remove(0);
-        all.retain(|other| !rises(&best.fit, &other.fit));
+        let near = best.fit.log_evidence - RISE * LN_10;
+        all.retain(|other| other.fit.log_evidence > near);
         let rivals = all.into_iter().map(|c| (c.which, c.fit.log_evidence));
         best.rivals = rivals.collect();
         Ok(best)
@@ -117,6 +119,34 @@ impl<P: Program> Choice<'_, P> {
         let seed = self.seed.child(7000 + (k * self.all.len() + other) as u64);
         let fit = extend(self.program, &known, added, hurdle, seed)?;
         Ok(fit.map(|fit| Chosen::new(which, fit)))
+    }
+
+    /// ln of the evidence that one more term must bring a model to. Half of the
+    /// prior is shared evenly by so many names, so that a second mechanism is
+    /// beforehand as unlikely as the first was: the evidence has to pay for it.
+    fn hurdle(&self, fit: &Fit) -> f64 {
+        let names = self.judged.iter().filter(|m| m.name != "none").count();
+        fit.log_evidence + RISE * LN_10 + (names as f64).ln()
+    }
+
+    fn rises(&self, more: &Fit, less: &Fit) -> bool {
+        more.log_evidence > self.hurdle(less)
+    }
+
+    /// The chosen, warned of where a pair of others reaches further.
+    fn rivalled(&self, mut chosen: Chosen, rival: Option<Chosen>) -> Chosen {
+        let reaches = |r: &Chosen| self.rises(&r.fit, &chosen.fit);
+        if let Some(rival) = rival.filter(reaches) {
+            let mechanisms = rival.mechanisms(self.all);
+            let names: Vec<_> = mechanisms.iter().map(|m| m.name()).collect();
+            let gain = rival.fit.log_evidence - chosen.fit.log_evidence;
+            chosen.fit.warnings.push(format!(
+                "{} together reach a higher evidence still, by {:.1} in log10",
+                names.join(" and "),
+                gain / LN_10
+            ));
+        }
+        chosen
     }
 
     /// The best variants of the physics with the most evidence.
@@ -152,7 +182,7 @@ impl<P: Program> Choice<'_, P> {
         let pairs: Vec<(usize, usize)> = (0..best.len())
             .flat_map(|i| (i + 1..best.len()).map(move |j| (best[i], best[j])))
             .collect();
-        let hurdle = single.log_evidence + RISE * LN_10;
+        let hurdle = self.hurdle(single);
         let fits = pairs
             .into_par_iter()
             .map(|(a, b)| {
@@ -179,7 +209,7 @@ impl<P: Program> Choice<'_, P> {
         two: &Chosen,
     ) -> Result<Option<Chosen>> {
         let known = two.mechanisms(self.all);
-        let hurdle = two.fit.log_evidence + RISE * LN_10;
+        let hurdle = self.hurdle(&two.fit);
         let fits = best
             .par_iter()
             .filter(|i| !two.which.contains(i))
@@ -242,25 +272,6 @@ impl Chosen {
         self.which.iter().map(|&i| all[i].as_ref()).collect()
     }
 
-    /// The same, warned of where a pair of others reaches further.
-    fn rivalled(
-        mut self,
-        rival: Option<Self>,
-        all: &[Box<dyn Mechanism>],
-    ) -> Self {
-        if let Some(rival) = rival.filter(|r| rises(&r.fit, &self.fit)) {
-            let names: Vec<_> =
-                rival.mechanisms(all).iter().map(|m| m.name()).collect();
-            let gain = rival.fit.log_evidence - self.fit.log_evidence;
-            self.fit.warnings.push(format!(
-                "{} together reach a higher evidence still, by {:.1} in log10",
-                names.join(" and "),
-                gain / LN_10
-            ));
-        }
-        self
-    }
-
     /// Where the mechanisms are confined to, by the medians of their edges.
     ///
     /// Of two modes of opposite sign (more friction here, or less everywhere
@@ -290,10 +301,6 @@ impl Chosen {
         }
         reaches
     }
-}
-
-fn rises(more: &Fit, less: &Fit) -> bool {
-    more.log_evidence - less.log_evidence > RISE * LN_10
 }
 
 fn most_evidence(fits: Vec<Option<Chosen>>) -> Option<Chosen> {
