@@ -2,7 +2,7 @@
 //! under other priors of the noise; each predicted from the others; all
 //! together. Arguments: event folders. Without any, the built-in recording.
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use couloir::discrepancy::{
     Diagnosis, Options, Sharing, Together, diagnose, diagnose_together, fit,
@@ -23,11 +23,7 @@ const NOISES: [(&str, &str); 2] =
 const RATE: f64 = 2.0;
 
 /// A file's model, of so many values a second, with priors of one's own.
-fn model(
-    path: &PathBuf,
-    rate: f64,
-    own: &[(&str, &str)],
-) -> Result<Assembled> {
+fn model(path: &Path, rate: f64, own: &[(&str, &str)]) -> Result<Assembled> {
     let file: EventFile = io::load(path, &Laws::default())?;
     let series = file.event.recordings().next();
     let series = series.ok_or_else(|| Error::input("no recording"))?;
@@ -78,7 +74,7 @@ fn head() {
     );
 }
 
-fn alone(path: &PathBuf) -> Result<()> {
+fn alone(path: &Path) -> Result<()> {
     let one = |what: &str, rate, own: &[(&str, &str)]| -> Result<()> {
         let model = model(path, rate, own)?;
         let options = Options::of(&model, 1);
@@ -170,6 +166,6 @@ fn main() -> Result<()> {
         println!("{}", in_words(&found).join("\n"));
         return Ok(());
     }
-    paths.iter().try_for_each(alone)?;
+    paths.iter().try_for_each(|path| alone(path))?;
     if paths.len() > 1 { together(&paths) } else { Ok(()) }
 }
