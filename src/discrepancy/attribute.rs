@@ -110,10 +110,13 @@ fn ridge(
     Ridge { held, places }
 }
 
-/// A model whose mechanisms are known, with its fit.
+/// A model whose mechanisms are known, with where it is best on the line.
 pub(super) struct Known<'a> {
     pub(super) mechanisms: &'a [&'a dyn Mechanism],
-    pub(super) fit: &'a Fit,
+    /// Their parameters.
+    pub(super) added: &'a [f64],
+    /// The model's own parameters.
+    pub(super) own: &'a [f64],
 }
 
 /// Starts and a ridge for one more mechanism, all else where it is best.
@@ -186,8 +189,7 @@ pub(super) fn extend<P: Program>(
     hurdle: f64,
     seed: Seed,
 ) -> Result<Option<Fit>> {
-    let (before, after) = (known.fit.mechanism(), known.fit.own());
-    let (from, ridge) = ways(added, before, after, seed.child(0));
+    let (from, ridge) = ways(added, known.added, known.own, seed.child(0));
     let mut mechanisms = known.mechanisms.to_vec();
     mechanisms.push(added.0);
     let ridges = vec![ridge];

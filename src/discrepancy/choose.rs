@@ -1,6 +1,7 @@
 //! What is added to the model: one mechanism, a pair, or three.
 
 use std::f64::consts::LN_10;
+use std::ops::Range;
 
 use rayon::prelude::*;
 
@@ -102,18 +103,19 @@ impl<P: Program> Choice<'_, P> {
         k: usize,
         other: usize,
     ) -> Result<Option<Chosen>> {
-        let mechanisms = chosen.mechanisms(self.all);
-        let counts = mechanisms.iter().map(|m| m.unknowns().len());
-        let counts: Vec<usize> = counts.collect();
-        let begin: usize = counts[..k].iter().sum();
-        let mut rest = chosen.fit.clone();
-        rest.best.drain(begin..begin + counts[k]);
-        rest.added -= counts[k];
-        let (mut kept, mut which) = (mechanisms, chosen.which.clone());
+        let mut kept = chosen.mechanisms(self.all);
+        let given_up = chosen.columns(self.all)[k].1.clone();
+        let mut parameters = chosen.fit.mechanism().to_vec();
+        parameters.drain(given_up);
+        let mut which = chosen.which.clone();
         kept.remove(k);
         which.remove(k);
         which.push(other);
-        let known = Known { mechanisms: &kept, fit: &rest };
+        let known = Known {
+            mechanisms: &kept,
+            added: &parameters,
+            own: chosen.fit.own(),
+        };
         let added = (self.all[other].as_ref(), &self.found.candidates[other]);
         let hurdle = chosen.fit.log_evidence - RISE * LN_10;
         let seed = self.seed.child(7000 + (k * self.all.len() + other) as u64);
@@ -215,7 +217,11 @@ impl<P: Program> Choice<'_, P> {
             .filter(|i| !two.which.contains(i))
             .map(|&i| {
                 let seed = self.seed.child(5000 + i as u64);
-                let known = Known { mechanisms: &known, fit: &two.fit };
+                let known = Known {
+                    mechanisms: &known,
+                    added: two.fit.mechanism(),
+                    own: two.fit.own(),
+                };
                 let added = (self.all[i].as_ref(), &self.found.candidates[i]);
                 let fit = extend(self.program, &known, added, hurdle, seed)?;
                 let which = [two.which.clone(), vec![i]].concat();
@@ -252,11 +258,9 @@ impl Chosen {
         all: &[Box<dyn Mechanism>],
     ) {
         let rows = rows_of(&self.fit.draws);
-        let mut first = 0;
-        for mechanism in self.mechanisms(all) {
-            let amplitudes = rows.iter().map(|row| row[first]);
+        for (mechanism, own) in self.columns(all) {
+            let amplitudes = rows.iter().map(|row| row[own.start]);
             let amplitude = median(&amplitudes.collect::<Vec<_>>());
-            first += mechanism.unknowns().len();
             let named = judged.iter_mut().find(|m| m.name == mechanism.name());
             if let Some(named) = named {
                 named.noun = mechanism.noun(amplitude);
@@ -272,17 +276,30 @@ impl Chosen {
         self.which.iter().map(|&i| all[i].as_ref()).collect()
     }
 
+    /// The mechanisms with the columns of their parameters in the draws.
+    fn columns<'a>(
+        &self,
+        all: &'a [Box<dyn Mechanism>],
+    ) -> Vec<(&'a dyn Mechanism, Range<usize>)> {
+        let mut end = 0;
+        let mechanisms = self.mechanisms(all).into_iter();
+        mechanisms
+            .map(|mechanism| {
+                let begin = end;
+                end += mechanism.unknowns().len();
+                (mechanism, begin..end)
+            })
+            .collect()
+    }
+
     /// Where the mechanisms are confined to, by the medians of their edges.
     ///
     /// Of two modes of opposite sign (more friction here, or less everywhere
     /// else) the more probable one counts: medians over both are nowhere.
     pub(super) fn reaches(&self, all: &[Box<dyn Mechanism>]) -> Vec<Reach> {
         let rows = rows_of(&self.fit.draws);
-        let mut first = 0;
         let mut reaches = Vec::new();
-        for mechanism in self.mechanisms(all) {
-            let own = first..first + mechanism.unknowns().len();
-            first = own.end;
+        for (mechanism, own) in self.columns(all) {
             let up = rows.iter().filter(|row| row[own.start] > 0.0).count();
             let sign = if 2 * up >= rows.len() { 1.0 } else { -1.0 };
             let edges: Vec<Reach> = rows

@@ -6,7 +6,7 @@ use std::f64::consts::LN_10;
 use super::attribute::Attribution;
 use super::diagnosis::{Judged, Told, Verdict};
 use super::fit::Fit;
-use super::locate::FreeForce;
+use super::locate::{FreeForce, NOUN, SAYS};
 use crate::change::{Candidate, Mechanism, Noun};
 use crate::draws::{Summary, log_sum_exp, summarise};
 use crate::error::{Error, Result};
@@ -127,15 +127,11 @@ fn unknown(forces: &[FreeForce], none: &Fit) -> Judged {
         .max_by(|a, b| a.log_bayes_factor.total_cmp(&b.log_bayes_factor));
     Judged {
         name: "unknown".into(),
-        noun: Noun::one(
-            "a force that no mechanism of the catalogue describes",
-        ),
+        noun: Noun::one(NOUN),
         kind: "unknown",
         log_evidence: log_mean(&logs),
         se: none.se,
-        says: "A force that none of the mechanisms describes acts on the \
-               mass."
-            .into(),
+        says: SAYS.into(),
         coordinate: best.map(|force| force.axis),
         ..Judged::default()
     }

@@ -4,13 +4,13 @@
 //! a smooth mismatch for itself; the plain least-squares figure beside it
 //! tells how far the motion alone can follow the recording.
 
-use argmin::core::{CostFunction, Executor, State};
-use argmin::solver::neldermead::NelderMead;
+use argmin::core::CostFunction;
 use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::fit::Fit;
 use crate::error::Result;
+use crate::infer::simplex::{WALL, descend};
 use crate::model::{Point, Posterior};
 use crate::predict::rmse;
 
@@ -21,8 +21,6 @@ const PATIENCE: u64 = 120;
 /// How often a search starts again about its best place, with a simplex as
 /// large as the last one's first.
 const ROUNDS: usize = 3;
-/// What a rejected place costs: finite, so that a simplex can compare it.
-const WALL: f64 = 1e12;
 
 /// The root mean square error at a place on the real line \[recorded unit\].
 #[derive(Clone, Copy)]
@@ -64,14 +62,14 @@ pub(super) fn least_squares(
         .collect::<Result<Vec<_>>>()?;
     let searches: Vec<f64> = lines
         .par_chunks_exact(corners)
-        .filter_map(|simplex| descend(misfit, simplex))
+        .filter_map(|simplex| search(misfit, simplex))
         .collect();
     let flows = searches.into_iter().filter(|e| *e < WALL);
     Ok(flows.fold(f64::NAN, f64::min))
 }
 
-/// Where Nelder and Mead's search from a simplex ends.
-fn descend(misfit: Misfit<'_, '_>, first: &[DVector<f64>]) -> Option<f64> {
+/// The least error that searches from a simplex come to.
+fn search(misfit: Misfit<'_, '_>, first: &[DVector<f64>]) -> Option<f64> {
     let mut best: Option<(f64, DVector<f64>)> = None;
     for _ in 0..ROUNDS {
         let simplex = match &best {
@@ -79,13 +77,7 @@ fn descend(misfit: Misfit<'_, '_>, first: &[DVector<f64>]) -> Option<f64> {
             Some((_, place)) => about(place, first),
         };
         let iterations = PATIENCE * first.len() as u64;
-        let solver = NelderMead::new(simplex).with_sd_tolerance(1e-9).ok()?;
-        let run = Executor::new(misfit, solver)
-            .configure(|state| state.max_iters(iterations))
-            .run()
-            .ok()?;
-        let place = run.state().get_best_param().cloned()?;
-        let error = run.state().get_best_cost();
+        let (error, place) = descend(misfit, simplex, 1e-9, iterations)?;
         if best.as_ref().is_none_or(|(least, _)| error < *least) {
             best = Some((error, place));
         }

@@ -41,6 +41,11 @@ const DRAWS: usize = 1500;
 const LENGTH: (f64, f64) = (20.0, 0.7);
 /// The prior scale of the force \[m/s2\].
 const SIZE: f64 = 1.0;
+/// What a force of free form is called, and what it says.
+pub(super) const NOUN: &str =
+    "a force that no mechanism of the catalogue describes";
+pub(super) const SAYS: &str =
+    "A force that none of the mechanisms describes acts on the mass.";
 
 /// A force of free form: a step function along an axis, whose values follow
 /// a Gaussian process of given length and size.
@@ -94,11 +99,11 @@ impl Candidate for FreeForm {
     }
 
     fn noun(&self, _amplitude: f64) -> Noun {
-        Noun::one("a force that no mechanism of the catalogue describes")
+        Noun::one(NOUN)
     }
 
     fn says(&self) -> &'static str {
-        "A force that none of the mechanisms describes acts on the mass."
+        SAYS
     }
 
     fn unknowns(&self) -> Vec<Unknown> {

@@ -9,12 +9,12 @@
 
 use argmin::core::{CostFunction, Executor, Gradient, State};
 use argmin::solver::linesearch::MoreThuenteLineSearch;
-use argmin::solver::neldermead::NelderMead;
 use argmin::solver::quasinewton::LBFGS;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::mh::value;
+use super::simplex::{WALL, descend};
 use super::start::apart;
 use super::{Backend, Inference, Progress};
 use crate::error::{Error, Result};
@@ -60,9 +60,6 @@ struct Descent<'a, 'm> {
     centre: &'a DVector<f64>,
     factor: &'a DMatrix<f64>,
 }
-
-/// What a rejected place costs: finite, so that a simplex can compare it.
-const WALL: f64 = 1e12;
 
 impl Descent<'_, '_> {
     fn line(&self, y: &DVector<f64>) -> DVector<f64> {
@@ -195,13 +192,8 @@ fn simplex(
         corner[i] += spread;
         corners.push(corner);
     }
-    let solver = NelderMead::new(corners).with_sd_tolerance(1e-10).ok()?;
     let iterations = iterations * start.len() as u64;
-    let run = Executor::new(descent, solver)
-        .configure(|state| state.max_iters(iterations))
-        .run()
-        .ok()?;
-    run.state().get_best_param().cloned()
+    descend(descent, corners, 1e-10, iterations).map(|(_, place)| place)
 }
 
 /// Minus the Hessian of the height on the line, from central differences of

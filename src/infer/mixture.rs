@@ -160,8 +160,8 @@ impl Mixture {
 
     /// The components of both, either half of the weight.
     #[must_use]
-    pub(super) fn beside(mut self, other: &Self) -> Self {
-        self.components.extend(other.components.iter().cloned());
+    pub(super) fn beside(mut self, other: Self) -> Self {
+        self.components.extend(other.components);
         for component in &mut self.components {
             component.log_weight -= std::f64::consts::LN_2;
         }

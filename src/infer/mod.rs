@@ -18,6 +18,7 @@ mod nuts;
 mod peaks;
 mod quadrature;
 mod reciprocal;
+pub(crate) mod simplex;
 mod smc;
 mod start;
 mod told;
