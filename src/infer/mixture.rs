@@ -25,7 +25,7 @@ const INFLATION: f64 = 1.3;
 /// how much such places may add to the relative variance of the weights before
 /// they get any, and how many at once.
 const TOO_LARGE: f64 = 10.0;
-const TOLERATED: f64 = 0.5;
+const TOLERATED: f64 = 0.1;
 const ADDED: usize = 8;
 
 /// The weight of an added component, and of the draws that tell its shape.
