@@ -12,6 +12,7 @@ use crate::observe::Series;
 use crate::physics::State;
 use crate::predict::{Bands, posterior_predictive, prior_predictive};
 use crate::prior::{AnyPrior, Prior};
+use crate::report::text::is_synthetic;
 use crate::report::{
     CalibrationReport, Checks, EvidenceReport, ParameterReport, TrackReport,
 };
@@ -68,7 +69,7 @@ pub fn calibrate(
         event: model.event().name().to_owned(),
         friction: model.friction(),
         noise: model.noise(),
-        mechanisms: model.mechanisms(),
+        mechanisms: model.labels(),
         backend: backend.name().to_owned(),
         seed,
         parameters: parameters(model, &draws, &summaries, mode.mode.as_ref()),
@@ -86,7 +87,7 @@ pub fn calibrate(
             method: e.method.clone(),
         }),
         warnings: found.warnings,
-        synthetic: model.event().name().to_lowercase().contains("synthetic"),
+        synthetic: is_synthetic(model.event().name()),
         prior_bands: prior,
         ..CalibrationReport::default()
     };
@@ -143,18 +144,14 @@ fn check_fit(
     let (_, found) = posterior.collect(Point::Natural(median))?;
     let innovations = found.innovations.into_iter().next().unwrap_or_default();
     let n = innovations.len();
-    let lags = (n / 5).clamp(1, 10);
     report.autocorrelation =
         draws::autocorrelation(&innovations, (n / 3).min(20))
             .into_iter()
             .skip(1)
             .collect();
-    let ljung_box = draws::ljung_box(&innovations, lags, 0);
-    let most = 5000.min(n);
-    let shapiro_wilk = draws::shapiro_wilk(&innovations[..most]);
     report.checks = Checks {
-        ljung_box_p: ljung_box.map_or(f64::NAN, |test| test.p),
-        shapiro_wilk_p: shapiro_wilk.map_or(f64::NAN, |test| test.p),
+        ljung_box_p: draws::uncorrelated_p(&innovations),
+        shapiro_wilk_p: draws::normal_p(&innovations),
         ..report.checks.clone()
     };
     report.innovation_times = series.times()[..n].to_vec();

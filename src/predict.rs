@@ -75,8 +75,8 @@ pub fn predictive_of_all(
             replicate(posterior, || Point::Natural(row), seed.child(i as u64))
         })
         .collect::<Result<Vec<_>>>()?;
-    let of = |k: usize| -> Vec<Pair> {
-        sets.iter().flatten().filter_map(|s| s.get(k).cloned()).collect()
+    let of = |k: usize| -> Vec<&Pair> {
+        sets.iter().flatten().filter_map(|s| s.get(k)).collect()
     };
     let series = times.iter().enumerate();
     series.map(|(k, times)| bands(&of(k), times)).collect()
@@ -108,7 +108,7 @@ pub fn prior_predictive(
             Ok(all.and_then(|all| all.into_iter().next()))
         })
         .collect::<Result<Vec<_>>>()?;
-    bands(&pairs.into_iter().flatten().collect::<Vec<_>>(), times)
+    bands(&pairs.iter().flatten().collect::<Vec<_>>(), times)
 }
 
 /// The flow at a point and one replicate of each recording; `None` where the
@@ -131,7 +131,7 @@ fn replicate<'a>(
     Ok(Some(flows.zip(replicates.series).collect()))
 }
 
-fn bands(pairs: &[Pair], times: &[f64]) -> Result<Bands> {
+fn bands(pairs: &[&Pair], times: &[f64]) -> Result<Bands> {
     if pairs.is_empty() {
         return Err(Error::inference("no draw has a flow to predict with"));
     }
@@ -167,10 +167,14 @@ impl Bands {
 
     /// The root mean square of values minus median flow.
     pub fn rmse(&self, values: &[f64]) -> f64 {
-        let squares =
-            values.iter().zip(&self.median).map(|(v, m)| (v - m).powi(2));
-        (squares.sum::<f64>() / values.len() as f64).sqrt()
+        rmse(values, &self.median)
     }
+}
+
+/// The root mean square of values minus predictions.
+pub(crate) fn rmse(values: &[f64], predicted: &[f64]) -> f64 {
+    let squares = values.iter().zip(predicted).map(|(v, p)| (v - p).powi(2));
+    (squares.sum::<f64>() / values.len() as f64).sqrt()
 }
 
 /// Synthetic recordings: what each series of the model might have shown if

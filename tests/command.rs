@@ -70,7 +70,7 @@ fn every_malformed_input_ends_in_exit_code_2_and_writes_nothing() {
 
 #[test]
 fn bad_arguments_end_in_exit_code_2() {
-    let cases: [(&[&str], &str); 15] = [
+    let cases: [(&[&str], &str); 16] = [
         (&["calibrate", "--friction", "coulom"], "--friction"),
         (&["calibrate", "--noise", "ar(0)"], "--noise"),
         (&["calibrate", "--noise", "ar(2)"], "regular grid"),
@@ -88,6 +88,7 @@ fn bad_arguments_end_in_exit_code_2() {
         (&["simulate", "--set", "nu=1"], "nu"),
         (&["simulate", "--set", "mu"], "NAME=VALUE"),
         (&["simulate", "--set", "mu=NaN"], "finite"),
+        (&["diagnose", "--odds", "surgee=3"], "none, unknown, turb"),
         (&["fly"], "fly"),
     ];
     for (arguments, part) in cases {
@@ -99,11 +100,15 @@ fn bad_arguments_end_in_exit_code_2() {
 
 /// The good event with mechanisms, and with other lines below its priors.
 fn corrected(name: &str, mechanisms: &str, priors: &str) -> PathBuf {
+    let list = format!("noise = \"iid\"\nmechanisms = [{mechanisms}]");
+    let event = cases::EVENT.replacen("noise = \"iid\"", &list, 1);
+    with_event(name, &(event + priors + "\n"))
+}
+
+/// The good data under another event.toml.
+fn with_event(name: &str, event: &str) -> PathBuf {
     let folder = fresh(name);
     std::fs::create_dir_all(&folder).unwrap();
-    let list = format!("noise = \"iid\"\nmechanisms = [{mechanisms}]");
-    let event =
-        cases::EVENT.replacen("noise = \"iid\"", &list, 1) + priors + "\n";
     std::fs::write(folder.join("event.toml"), event).unwrap();
     std::fs::write(folder.join("track.csv"), cases::TRACK).unwrap();
     std::fs::write(folder.join("recording.csv"), cases::RECORDING).unwrap();
@@ -172,14 +177,73 @@ fn a_corrected_event_runs() {
     assert!(ends[1] < ends[0] - 1.0, "{ends:?}");
 }
 
+/// A slope on which a drag was left out: Coulomb friction and r u^2, with
+/// errors of 0.05 m/s that come round again (synthetic).
+fn dragged(name: &str) -> PathBuf {
+    let folder = fresh(name);
+    std::fs::create_dir_all(folder.join("event")).unwrap();
+    let event = "name = \"Dragged (synthetic)\"\n[track] # a slope\n\
+        slope = 30.0\nlength = 900.0\n[recording]\n\
+        file = \"../values.csv\" # by radar\nquantity = \"velocity\"\n\
+        [priors]\nmu = \"Gamma(9, 0.03)\"\nxi = \"Gamma(2.5, 400)\"\n";
+    std::fs::write(folder.join("event/event.toml"), event).unwrap();
+    // du/dt = a - c u^2 from rest: u = sqrt(a/c) tanh(sqrt(a c) t).
+    let (a, c) = (9.81 * (0.5 - 0.25 * 0.75_f64.sqrt()), 0.005_f64);
+    let mut values = "t,velocity\n".to_owned();
+    for i in 1..=40 {
+        let (t, phase) = (0.4 * f64::from(i), 2.4 * f64::from(i));
+        let u = (a / c).sqrt() * ((a * c).sqrt() * t).tanh();
+        values += &format!("{t:.1},{:.3}\n", u + 0.07 * phase.sin());
+    }
+    std::fs::write(folder.join("values.csv"), values).unwrap();
+    folder
+}
+
+#[test]
+fn a_diagnosis_writes_an_event_that_runs() {
+    let folder = dragged("diagnosis");
+    let (event, out) = (folder.join("event"), folder.join("out"));
+    let path = out.join("corrected");
+    let [event, out] = [&event, &out].map(|path| path.to_str().unwrap());
+    let arguments = ["diagnose", event, "--friction", "coulomb", "--out", out];
+    let output = couloir(&arguments);
+    assert!(output.status.success(), "{}", said(&output));
+    assert!(printed(&output).contains("draws.csv, corrected/"));
+    let read = |name: &str| {
+        std::fs::read_to_string(Path::new(out).join(name)).unwrap()
+    };
+    let json: Value = serde_json::from_str(&read("diagnosis.json")).unwrap();
+    assert_eq!(json["selected"][0], "turbulent-drag", "{}", json["selected"]);
+    let draws = read("draws.csv");
+    assert!(draws.starts_with("chain,"), "{}", &draws[..40]);
+    let head = draws.lines().next().unwrap();
+    assert!(head.contains("turbulent-drag.drag") && head.contains("mu"));
+    let text = read("corrected/event.toml");
+    for kept in ["[track] # a slope", "# by radar", "mu = \"Gamma(9, 0.03)\""]
+    {
+        assert!(text.contains(kept), "{text}");
+    }
+    // Coulomb's law has no xi.
+    assert!(!text.contains("xi"), "{text}");
+    let mut arguments = vec!["calibrate", path.to_str().unwrap(), "--json"];
+    arguments.extend(QUICK);
+    let output = couloir(&arguments);
+    assert!(output.status.success(), "{}", said(&output));
+    let again: Value = serde_json::from_str(&printed(&output)).unwrap();
+    assert_eq!(again["model"]["friction"], "coulomb");
+    assert_eq!(again["model"]["mechanisms"][0], "turbulent-drag");
+    // The same posterior from another backend: within a third of its sd.
+    let of = |json: &Value, what: &str| {
+        json["parameters"]["turbulent-drag.drag"][what].as_f64().unwrap()
+    };
+    let apart = of(&again, "mean") - of(&json, "mean");
+    assert!(apart.abs() < of(&json, "sd") / 3.0, "{apart}");
+}
+
 #[test]
 fn a_prior_of_no_parameter_is_refused_unless_the_law_was_changed() {
-    let folder = fresh("unused-prior");
-    std::fs::create_dir_all(&folder).unwrap();
     let event = cases::EVENT.to_owned() + "zeta = \"Gamma(9, 0.03)\"\n";
-    std::fs::write(folder.join("event.toml"), event).unwrap();
-    std::fs::write(folder.join("track.csv"), cases::TRACK).unwrap();
-    std::fs::write(folder.join("recording.csv"), cases::RECORDING).unwrap();
+    let folder = with_event("unused-prior", &event);
     let output = couloir(&["calibrate", &folder.to_string_lossy()]);
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));
     assert!(said(&output).contains("zeta"), "{}", said(&output));

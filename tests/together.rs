@@ -7,9 +7,11 @@ use std::collections::BTreeMap;
 
 use couloir::change::{Family, Mechanism};
 use couloir::discrepancy::mechanisms::{FrictionPatch, find};
-use couloir::discrepancy::{Fit, Sharing, Together, fit};
+use couloir::discrepancy::{
+    Fit, Options, Sharing, Together, Verdict, diagnose, fit,
+};
 use couloir::draws::summarise;
-use couloir::infer::Peaks;
+use couloir::infer::{Peaks, Quiet};
 use couloir::model::{Assembled, Point, Posterior, Program, With};
 use couloir::noise::{self, Iid, Noise};
 use couloir::physics::Track;
@@ -92,6 +94,61 @@ fn mechanisms_of_an_event_file_are_those_put_on_from_outside() {
     let known = likelihood(&part, &all);
     assert!(known.is_finite() && known != b);
     assert!(inside.rest(&all).unwrap().is_none());
+}
+
+/// A slide whose model has a mechanism already.
+fn having(label: &str) -> Assembled {
+    let plain = slide("one", 0.0, 1);
+    let found = find(label, &plain.event().extent(), &[]).unwrap();
+    plain.with_mechanisms(vec![found], &BTreeMap::new()).unwrap()
+}
+
+#[test]
+fn what_a_model_has_is_not_looked_for_and_stays() {
+    let model = having("clock-offset");
+    let options = Options::of(&model, 1);
+    let found = diagnose(&model, model.event(), &options, &Quiet).unwrap();
+    assert_eq!(found.verdict, Verdict::MissingPhysics);
+    let names: Vec<&str> =
+        found.mechanisms.iter().map(|m| m.name.as_str()).collect();
+    assert!(!names.contains(&"clock-offset"), "{names:?}");
+    assert_eq!(found.baseline.mechanisms, ["clock-offset"]);
+    // Whatever is found, it comes after what was there.
+    let corrected = &found.corrected;
+    let all = [&found.baseline.mechanisms[..], &found.selected].concat();
+    assert_eq!(corrected.labels.len(), all.len());
+    for (i, (label, name)) in corrected.labels.iter().zip(&all).enumerate() {
+        assert!(label.starts_with(name), "{label}");
+        let line = &corrected.equation[1 + i];
+        assert!(line.starts_with(&format!("{name}: ")), "{line}");
+        let line = format!("let added_{i} = find({label:?}, &extent");
+        assert!(corrected.model.contains(&line), "{}", corrected.model);
+    }
+}
+
+#[test]
+fn no_variant_of_what_a_model_has_is_looked_for() {
+    let model = having("friction-step(time)");
+    let extent = model.event().extent();
+    let names = |blocks: &[String]| -> Vec<&str> {
+        let all = couloir::discrepancy::mechanisms::catalogue(&extent, blocks);
+        all.iter().map(|m| m.name()).collect()
+    };
+    assert!(names(&[]).contains(&"friction-step"));
+    assert!(!names(&model.blocks()).contains(&"friction-step"));
+    // A force is shared by all events, a clock is each one's own.
+    let together = |label: &str| -> Vec<String> {
+        let events = vec![having(label), slide("two", 40.0, 2)];
+        let together = Together::new(events, false).unwrap();
+        let clock = together.catalogue(Sharing::Shared);
+        let of = |name: &str| {
+            let found = clock.iter().find(|m| m.name() == name)?;
+            Some(found.unknowns().into_iter().map(|u| u.name))
+        };
+        of(label).into_iter().flatten().collect()
+    };
+    assert!(together("friction-patch").is_empty());
+    assert_eq!(together("clock-offset"), ["two.ahead"]);
 }
 
 #[test]

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::case::{Coordinate, Interval, Truth};
 use super::effects::{CATALOGUE, Class};
+use crate::draws;
 
 /// The word for nothing hidden, and the verdict that says so.
 pub(super) const NONE: &str = "none";
@@ -311,13 +312,10 @@ fn in_catalogue(truth: &Truth) -> bool {
     !matches!(truth.class, Class::None | Class::Outside)
 }
 
-/// The middle of some numbers, the mean of the middle two of an even count.
+/// The median of some numbers, where there are any.
 fn median(all: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut all: Vec<f64> = all.collect();
-    all.sort_by(f64::total_cmp);
-    let n = all.len();
-    let upper = *all.get(n / 2)?;
-    Some(if n % 2 == 1 { upper } else { 0.5 * (all[n / 2 - 1] + upper) })
+    let all: Vec<f64> = all.collect();
+    (!all.is_empty()).then(|| draws::median(&all))
 }
 
 /// Stated and true shares in equal bins of the top probability. Cases weigh

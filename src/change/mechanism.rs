@@ -22,7 +22,7 @@ pub enum Family {
     /// How the motion is measured.
     Measurement,
     /// How the values scatter.
-    Noise,
+    Errors,
 }
 
 impl Family {
@@ -32,7 +32,7 @@ impl Family {
             Self::Physics => "physics",
             Self::Start => "start",
             Self::Measurement => "measurement",
-            Self::Noise => "noise",
+            Self::Errors => "noise",
         }
     }
 }
@@ -52,6 +52,27 @@ pub struct Unknown {
     pub unit: &'static str,
     /// Its prior, scaled to the event.
     pub prior: AnyPrior,
+}
+
+/// What something is called in a sentence: "a clock that is off".
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Noun {
+    /// The words.
+    pub words: String,
+    /// Whether a verb with it stands in the plural.
+    pub plural: bool,
+}
+
+impl Noun {
+    /// A noun in the singular.
+    pub fn one(words: impl Into<String>) -> Self {
+        Self { words: words.into(), plural: false }
+    }
+
+    /// A noun in the plural.
+    pub fn many(words: impl Into<String>) -> Self {
+        Self { words: words.into(), plural: true }
+    }
 }
 
 /// Where a mechanism acts, where it is confined.
@@ -78,6 +99,10 @@ pub trait Candidate: Debug + Send + Sync {
 
     /// What sort of thing it changes.
     fn family(&self) -> Family;
+
+    /// As a snow scientist would call it. The sign of the amplitude may go into
+    /// the words, which are those of either sign where it is NaN.
+    fn noun(&self, amplitude: f64) -> Noun;
 
     /// What it says of the recording, in one plain sentence.
     fn says(&self) -> &'static str;

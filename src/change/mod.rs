@@ -8,7 +8,7 @@
 mod mechanism;
 
 pub use mechanism::{
-    Candidate, ChangeKind, ChangeOf, Family, Mechanism, Missing, Reach,
+    Candidate, ChangeKind, ChangeOf, Family, Mechanism, Missing, Noun, Reach,
     Unknown,
 };
 

@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::progress::Told;
-use super::{Output, Subject, Work, backend_name, width};
+use super::{Output, Subject, Work, backend_name, width, written};
 use crate::calibrate::{Calibration, calibrate};
 use crate::error::Result;
 use crate::infer::backend;
@@ -62,12 +62,8 @@ impl Arguments {
             "\n{}: {} simulations, {:.2} s, seed {}\n",
             report.backend, report.simulations, report.seconds, report.seed
         ));
-        if let Some(folder) = &self.output.out {
-            text.push_str(&format!(
-                "Written to {}: report.html, calibration.json, draws.csv\n",
-                folder.display()
-            ));
-        }
+        let files = ["report.html", "calibration.json", "draws.csv"];
+        text.push_str(&written(self.output.out.as_deref(), &files));
         text
     }
 }

@@ -8,7 +8,7 @@ use clap::Args;
 use super::calibrate::{pretty, wrapped};
 use super::progress::Told;
 use super::study::assemble;
-use super::{at_least_one, width};
+use super::{at_least_one, width, written};
 use crate::challenge::{
     Answer, Case, Coordinate, Interval, Mix, PowerTable, cases,
     challenge_json, page, power_cases, power_page, run, words,
@@ -83,12 +83,8 @@ impl Arguments {
         let width = width();
         let mut text: String =
             words(&scored).iter().map(|s| wrapped(s, width)).collect();
-        if let Some(folder) = &self.out {
-            text.push_str(&format!(
-                "\nWritten to {}: challenge.html, challenge.json\n",
-                folder.display()
-            ));
-        }
+        let files = ["challenge.html", "challenge.json"];
+        text.push_str(&written(self.out.as_deref(), &files));
         Ok(text)
     }
 

@@ -142,7 +142,7 @@ impl Arguments {
         Ok(Compared {
             friction: model.friction(),
             noise: model.noise(),
-            mechanisms: model.mechanisms(),
+            mechanisms: model.labels(),
             evidence,
             loo,
             lfo,

@@ -1,13 +1,13 @@
 //! `couloir diagnose`: where simulation and recording differ, and what was
 //! left out.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::calibrate::pretty;
 use super::progress::Told;
-use super::{Output, Subject, width};
+use super::{Output, Subject, width, written};
 use crate::discrepancy::{
     Diagnosis, Odds, Options, Sharing, Together, diagnose, diagnose_together,
     page, summary,
@@ -57,34 +57,56 @@ fn odds(text: &str) -> Result<(String, f64), String> {
     }
 }
 
+/// Event folders, by their names in the folder of the results: one, or one
+/// for each event.
+type Folders = Vec<(PathBuf, Vec<(&'static str, String)>)>;
+
 impl Arguments {
     pub(super) fn run(&self, laws: &Laws) -> Result<String> {
-        let mut models = Vec::new();
-        for event in self.subjects() {
-            models.push(event.model(laws)?);
-        }
+        let subjects = self.subjects();
+        let models = subjects
+            .iter()
+            .map(|event| event.model(laws))
+            .collect::<Result<Vec<_>>>()?;
         let told = Told::new();
-        let found = self.diagnose(models, &told)?;
+        let (found, labels) = self.diagnose(models, &told)?;
         drop(told);
         let json = pretty(&found.json());
-        if let Some(folder) = &self.output.out {
-            let files = [
-                ("diagnosis.json", json.clone()),
-                ("report.html", page(&found)),
-            ];
-            write_all(folder, &files)?;
-        }
+        let again = match &self.output.out {
+            Some(folder) => {
+                let again = corrected(&subjects, &labels, &found, laws)?;
+                self.write(folder, &found, &again)?;
+                again
+            }
+            None => Vec::new(),
+        };
         if self.output.json {
             return Ok(json);
         }
-        let mut text = summary(&found, width());
-        if let Some(folder) = &self.output.out {
-            text.push_str(&format!(
-                "\nWritten to {}: report.html, diagnosis.json\n",
-                folder.display()
-            ));
+        let mut files = vec!["report.html", "diagnosis.json", "draws.csv"];
+        if !again.is_empty() {
+            files.push("corrected/");
         }
+        let mut text = summary(&found, width());
+        text.push_str(&written(self.output.out.as_deref(), &files));
         Ok(text)
+    }
+
+    fn write(
+        &self,
+        folder: &Path,
+        found: &Diagnosis,
+        again: &Folders,
+    ) -> Result<()> {
+        let mut files = vec![
+            ("diagnosis.json", pretty(&found.json())),
+            ("report.html", page(found)),
+        ];
+        files.extend(found.draws.iter().map(|d| ("draws.csv", d.to_csv())));
+        write_all(folder, &files)?;
+        again
+            .iter()
+            .try_for_each(|(name, event)| write_all(&folder.join(name), event))
     }
 
     /// Each event with what the command line changes of it.
@@ -103,11 +125,12 @@ impl Arguments {
         self.events.iter().cloned().map(Some).map(of).collect()
     }
 
+    /// The diagnosis, and what each of several events is called by.
     fn diagnose(
         &self,
         mut models: Vec<Assembled>,
         told: &Told,
-    ) -> Result<Diagnosis> {
+    ) -> Result<(Diagnosis, Vec<String>)> {
         let odds = || self.odds.iter().cloned().collect::<Odds>();
         if models.len() > 1 {
             let together = Together::new(models, self.one_law)?;
@@ -115,12 +138,38 @@ impl Arguments {
             options.odds = odds();
             let sharing =
                 if self.pooled { Sharing::Pooled } else { Sharing::Shared };
-            return diagnose_together(&together, sharing, &options, told);
+            let found = diagnose_together(&together, sharing, &options, told)?;
+            return Ok((found, together.labels().to_vec()));
         }
         let model =
             models.pop().ok_or_else(|| Error::input("no event was given"))?;
         let mut options = Options::of(&model, self.seed);
         options.odds = odds();
-        diagnose(&model, model.event(), &options, told)
+        let found = diagnose(&model, model.event(), &options, told)?;
+        Ok((found, Vec::new()))
     }
+}
+
+/// The events again, with the mechanisms that were found; none where nothing
+/// of the catalogue was.
+fn corrected(
+    subjects: &[Subject],
+    labels: &[String],
+    found: &Diagnosis,
+    laws: &Laws,
+) -> Result<Folders> {
+    let had = found.baseline.mechanisms.len();
+    let added = found.corrected.labels.get(had..).unwrap_or_default();
+    if added.is_empty() {
+        return Ok(Vec::new());
+    }
+    subjects
+        .iter()
+        .enumerate()
+        .map(|(i, event)| {
+            let mut folder = PathBuf::from("corrected");
+            folder.extend(labels.get(i));
+            Ok((folder, event.corrected(laws, added)?))
+        })
+        .collect()
 }

@@ -15,7 +15,7 @@ mod reproduce;
 mod simulate;
 mod study;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -204,6 +204,14 @@ fn print(text: &str) -> ExitCode {
 #[allow(clippy::print_stderr)]
 fn complain(message: &str) {
     eprintln!("couloir: {message}");
+}
+
+/// Where the results are, in the line that ends what is printed: nothing
+/// where no folder was asked for.
+fn written(folder: Option<&Path>, files: &[&str]) -> String {
+    folder.map_or_else(String::new, |folder| {
+        format!("\nWritten to {}: {}\n", folder.display(), files.join(", "))
+    })
 }
 
 /// The width to print to: that of the terminal, 80 at the most.

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::calibrate::{pretty, wrapped};
 use super::progress::Told;
-use super::width;
+use super::{width, written};
 use crate::error::Result;
 use crate::io::write_all;
 use crate::report;
@@ -50,13 +50,9 @@ impl Arguments {
         let width = width();
         let mut text: String =
             words(&found).iter().map(|s| wrapped(s, width)).collect();
-        if let Some(folder) = &self.out {
-            text.push_str(&format!(
-                "\nWritten to {}: reproduction.html, reproduction.json, \
-                 m0.html, m1.html\n",
-                folder.display()
-            ));
-        }
+        let files =
+            ["reproduction.html", "reproduction.json", "m0.html", "m1.html"];
+        text.push_str(&written(self.out.as_deref(), &files));
         Ok(text)
     }
 }

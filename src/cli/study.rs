@@ -31,6 +31,32 @@ impl Subject {
         }
         Ok(model)
     }
+
+    /// The event's files with these mechanisms added to its model, as far as
+    /// they apply to it.
+    pub(super) fn corrected(
+        &self,
+        laws: &Laws,
+        added: &[String],
+    ) -> Result<Vec<(&'static str, String)>> {
+        let (friction, noise) = (self.friction.clone(), self.noise.clone());
+        let file = self.load(laws)?;
+        let priors = file.priors.clone();
+        let before =
+            assemble(file, laws, friction.clone(), noise.clone(), None)?;
+        let (extent, blocks) = (before.event().extent(), before.blocks());
+        let found = added
+            .iter()
+            .filter_map(|label| find(label, &extent, &blocks).ok())
+            .collect();
+        let model = before.with_mechanisms(found, &priors)?;
+        let mechanisms = model.labels();
+        let unused = model.unused(&priors);
+        let unused = unused.into_iter().map(str::to_owned).collect();
+        let correction =
+            io::Correction { friction, noise, mechanisms, unused };
+        io::corrected(self.event.as_deref(), &correction)
+    }
 }
 
 /// A model of an event's own laws, noise and mechanisms, or of others by

@@ -23,9 +23,9 @@ pub struct Attribution {
 /// of so many parameters somewhere in its prior.
 fn climbs(unknowns: usize) -> usize {
     match unknowns {
-        1 => 4,
-        2 => 10,
-        _ => 24,
+        1 => 10,
+        2 => 16,
+        _ => 32,
     }
 }
 
@@ -85,8 +85,8 @@ fn single<P: Program>(
 /// The coordinates of a mechanism along which the data may tell little, with
 /// even places along them; `before` and `after` are where all others begin.
 ///
-/// An amplitude that may have either sign follows from the rest, nearly as in
-/// linear regression: it is not among them.
+/// An amplitude that may have either sign follows from where its stretch is,
+/// nearly as in linear regression: there it is not among them.
 fn ridge(
     mechanism: &dyn Mechanism,
     before: &[f64],
@@ -95,9 +95,8 @@ fn ridge(
 ) -> Ridge {
     let unknowns = mechanism.unknowns();
     let (leading, others) = unknowns.split_at(mechanism.leading());
-    let signed = leading
-        .first()
-        .is_some_and(|u| matches!(u.prior, AnyPrior::Normal(..)));
+    let signed =
+        leading.len() > 1 && matches!(leading[0].prior, AnyPrior::Normal(..));
     let free = usize::from(signed);
     let held = before.len() + free..before.len() + leading.len();
     let kept = &leading[free..];

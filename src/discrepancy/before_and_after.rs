@@ -1,14 +1,19 @@
 //! A fitted model's figures: how it predicts what was recorded.
 
+use std::f64::consts::LN_10;
+
+use super::check::stationary_sd;
+use super::diagnosis::{Improvement, Pair, Pictured};
 use super::fit::Fit;
+use super::least_squares::least_squares;
 use crate::change::Mechanism;
-use crate::draws::{self, Draws};
+use crate::draws::{Draws, uncorrelated_p};
 use crate::elpd::leave_one_out;
 use crate::error::{Error, Result};
 use crate::infer::{Backend, Peaks, Quiet, climb};
 use crate::model::{Point, Posterior, Program, With};
 use crate::observe::{Event, Quantity, Series};
-use crate::predict::{Bands, predictive_of_all};
+use crate::predict::{Bands, predictive_of_all, rmse};
 use crate::seed::Seed;
 
 /// A model to be shown: what is added, how it was fitted, and a seed.
@@ -35,6 +40,8 @@ pub(super) struct Figures {
     pub(super) heldout_rmse: f64,
     pub(super) coverage90: f64,
     pub(super) ljung_box_p: f64,
+    pub(super) least_squares: f64,
+    pub(super) stationary_sd: f64,
     pub(super) innovations: Vec<Vec<f64>>,
     /// Of each recording.
     pub(super) bands: Vec<Bands>,
@@ -73,6 +80,11 @@ pub(super) fn show<P: Program>(
         heldout_rmse: held_out(program, shown, &values)?,
         coverage90: coverage(&bands, &values),
         ljung_box_p: uncorrelated(&found.innovations),
+        least_squares: match shown.rough {
+            true => f64::NAN,
+            false => least_squares(&posterior, shown.fit, &values)?,
+        },
+        stationary_sd: stationary_sd(draws).unwrap_or(f64::NAN),
         places: places
             .map(|((event, series), p)| places_of(event, series, p))
             .collect(),
@@ -106,11 +118,9 @@ fn uncorrelated(innovations: &[Vec<f64>]) -> f64 {
     let count = innovations.len() as f64;
     innovations
         .iter()
-        .filter_map(|series| {
-            let lags = (series.len() / 5).clamp(1, 10);
-            draws::ljung_box(series, lags, 0)
-        })
-        .map(|test| (test.p * count).min(1.0))
+        .map(|series| uncorrelated_p(series))
+        .filter(|p| p.is_finite())
+        .map(|p| (p * count).min(1.0))
         .fold(f64::NAN, f64::min)
 }
 
@@ -144,12 +154,6 @@ fn mean_prediction(
         sum.iter_mut().for_each(|s| *s /= count);
     }
     Ok(sums)
-}
-
-fn rmse(values: &[f64], predicted: &[f64]) -> f64 {
-    let squares: f64 =
-        values.iter().zip(predicted).map(|(v, p)| (v - p).powi(2)).sum();
-    (squares / values.len().max(1) as f64).sqrt()
 }
 
 /// The RMSE over the last values, of the model fitted to those before.
@@ -212,6 +216,60 @@ fn places_of(event: &Event, series: &Series, predicted: &[f64]) -> Vec<f64> {
             place += 0.5 * (speed + next) * (t - time);
             (time, speed) = (t, next);
             place
+        })
+        .collect()
+}
+
+/// What going from one model to the other brings.
+pub(super) fn improvement(
+    none: &Fit,
+    fit: &Fit,
+    old: &Figures,
+    new: &Figures,
+) -> Improvement {
+    let pair =
+        |of: fn(&Figures) -> f64| Pair { before: of(old), after: of(new) };
+    let gain = fit.log_evidence - none.log_evidence;
+    Improvement {
+        log10_bayes_factor: gain / LN_10,
+        rmse: pair(|f| f.rmse),
+        elpd: pair(|f| f.elpd),
+        heldout_rmse: pair(|f| f.heldout_rmse),
+        coverage90: pair(|f| f.coverage90),
+        ljung_box_p: pair(|f| f.ljung_box_p),
+        least_squares: pair(|f| f.least_squares),
+        stationary_sd: pair(|f| f.stationary_sd),
+    }
+}
+
+/// Each recording with what both models predict of it.
+pub(super) fn pictured(
+    events: &[&Event],
+    before: &Figures,
+    after: &Figures,
+    corrected: bool,
+) -> Vec<Pictured> {
+    recordings(events)
+        .into_iter()
+        .enumerate()
+        .map(|(i, (event, series))| {
+            let (x, z) = event.track().points();
+            Pictured {
+                event: event.name().to_owned(),
+                quantity: series.quantity().name().to_owned(),
+                unit: series.quantity().unit().to_owned(),
+                times: series.times().to_vec(),
+                values: series.values().to_vec(),
+                places: after.places[i].clone(),
+                before: before.bands[i].clone(),
+                after: if corrected {
+                    after.bands[i].clone()
+                } else {
+                    Bands::default()
+                },
+                track: (x.to_vec(), z.to_vec()),
+                ..Pictured::default()
+            }
         })
         .collect()
 }

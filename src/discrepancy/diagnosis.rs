@@ -5,6 +5,8 @@ use std::f64::consts::LN_10;
 use serde_json::{Map, Value, json};
 
 use super::locate::FreeForce;
+use crate::change::Noun;
+use crate::draws::Draws;
 use crate::physics::forces::Axis;
 use crate::predict::Bands;
 
@@ -25,6 +27,9 @@ pub struct Diagnosis {
     pub selected: Vec<String>,
     /// What the recording cannot tell apart.
     pub group: Vec<String>,
+    /// Combinations that would do nearly as well as the selected one: within
+    /// 1 in log10.
+    pub rivals: Vec<Rival>,
     /// What adding it brings.
     pub improvement: Improvement,
     /// The recording that would tell the group apart, in a sentence.
@@ -33,6 +38,9 @@ pub struct Diagnosis {
     pub parameters: Vec<Told>,
     /// The corrected model, written out.
     pub corrected: Corrected,
+    /// Its posterior draws; those of the model as it was where nothing is
+    /// added.
+    pub draws: Option<Draws>,
     /// The free-form force over distance, over time, and over speed.
     pub forces: Vec<FreeForce>,
     /// The recordings with what both models predict.
@@ -50,6 +58,8 @@ pub struct Baseline {
     pub friction: String,
     /// The noise.
     pub noise: String,
+    /// The labels of the mechanisms that it had already.
+    pub mechanisms: Vec<String>,
     /// ln p(recording | model).
     pub log_evidence: f64,
     /// Of the posterior mean prediction, in the recording's unit.
@@ -80,7 +90,7 @@ pub enum Verdict {
     /// The start or the measurement is not as the model has it.
     Measurement,
     /// The errors are.
-    Noise,
+    Errors,
     /// Something that no mechanism describes.
     Unexplained,
 }
@@ -92,7 +102,7 @@ impl Verdict {
             Self::Adequate => "adequate",
             Self::MissingPhysics => "missing-physics",
             Self::Measurement => "measurement",
-            Self::Noise => "noise",
+            Self::Errors => "noise",
             Self::Unexplained => "unexplained",
         }
     }
@@ -153,6 +163,8 @@ pub struct Told {
 pub struct Judged {
     /// Its name; "none" for the model as it was.
     pub name: String,
+    /// What it is called in a sentence.
+    pub noun: Noun,
     /// Its kind: none, physics, start, measurement, noise, unknown.
     pub kind: &'static str,
     /// Its probability.
@@ -175,6 +187,15 @@ pub struct Judged {
     pub variants: Vec<(String, f64)>,
 }
 
+/// A combination of mechanisms beside the selected one.
+#[derive(Debug, Clone, Default)]
+pub struct Rival {
+    /// Their names.
+    pub names: Vec<String>,
+    /// Against the model as it was.
+    pub log10_bayes_factor: f64,
+}
+
 /// Before and after.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Improvement {
@@ -182,6 +203,11 @@ pub struct Improvement {
     pub log10_bayes_factor: f64,
     /// Of the posterior mean prediction, in the recording's unit.
     pub rmse: Pair,
+    /// The least error that the motion reaches, whatever priors and noise
+    /// say; NaN where it was not searched.
+    pub least_squares: Pair,
+    /// The sd of the errors themselves under AR(1) noise; NaN under others.
+    pub stationary_sd: Pair,
     /// Expected log predictive density by PSIS-LOO.
     pub elpd: Pair,
     /// Of the last 30 %, predicted from the first 70 %.
@@ -297,6 +323,13 @@ fn judged_json(m: &Judged) -> Value {
     value
 }
 
+fn rival_json(rival: &Rival) -> Value {
+    json!({
+        "names": rival.names,
+        "log10_bayes_factor": rival.log10_bayes_factor,
+    })
+}
+
 fn force_json(force: &FreeForce) -> Value {
     json!({
         "coordinate": axis_name(force.axis), "at": force.at,
@@ -314,6 +347,7 @@ impl Diagnosis {
             "event": self.event,
             "baseline": {
                 "friction": b.friction, "noise": b.noise,
+                "mechanisms": b.mechanisms,
                 "log_evidence": b.log_evidence, "rmse": b.rmse,
                 "ljung_box_p": b.ljung_box_p,
                 "shapiro_wilk_p": b.shapiro_wilk_p,
@@ -329,6 +363,7 @@ impl Diagnosis {
                 self.mechanisms.iter().map(judged_json).collect::<Vec<_>>(),
             "selected": self.selected,
             "group": self.group,
+            "rivals": self.rivals.iter().map(rival_json).collect::<Vec<_>>(),
             "improvement": {
                 "log10_bayes_factor": i.log10_bayes_factor,
                 "rmse_before": i.rmse.before,
@@ -341,6 +376,10 @@ impl Diagnosis {
                 "coverage90_after": i.coverage90.after,
                 "ljung_box_p_before": i.ljung_box_p.before,
                 "ljung_box_p_after": i.ljung_box_p.after,
+                "least_squares_before": i.least_squares.before,
+                "least_squares_after": i.least_squares.after,
+                "stationary_sd_before": i.stationary_sd.before,
+                "stationary_sd_after": i.stationary_sd.after,
             },
             "parameters": parameters_json(&self.parameters),
             "corrected": {

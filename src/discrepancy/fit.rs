@@ -104,13 +104,20 @@ pub(super) fn spread(
 }
 
 /// The place on the line of a prior's quantile, and how far it is to those
-/// half a step of probability away.
+/// half a step away.
+///
+/// Steps are even in the angle whose sin^2 is the probability: places lie
+/// denser at the ends of a prior, where a short stretch, or one at the very
+/// start of the run, has a mode of its own.
 fn place(prior: &AnyPrior, p: f64, step: f64) -> (f64, f64) {
+    let at = |p: f64| {
+        on_line(prior, (p * std::f64::consts::FRAC_PI_2).sin().powi(2))
+    };
     let edge = 0.25 * step;
     let middle = p.clamp(edge, 1.0 - edge);
-    let below = on_line(prior, (middle - 0.5 * step).max(0.5 * edge));
-    let above = on_line(prior, (middle + 0.5 * step).min(1.0 - 0.5 * edge));
-    (on_line(prior, middle), 0.6 * (above - below))
+    let below = at((middle - 0.5 * step).max(0.5 * edge));
+    let above = at((middle + 0.5 * step).min(1.0 - 0.5 * edge));
+    (at(middle), 0.6 * (above - below))
 }
 
 const PRIMES: [u64; 20] = [

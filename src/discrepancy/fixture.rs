@@ -1,7 +1,11 @@
 //! A diagnosis to test with, of made-up numbers: a patch of higher friction
 //! from 132 to 187 m.
 
+use super::mechanisms::find;
 use super::*;
+use crate::change::Noun;
+use crate::observe::{Event, Series};
+use crate::physics::Track;
 use crate::physics::forces::Axis;
 use crate::predict::Bands;
 
@@ -26,6 +30,7 @@ fn judged(
 ) -> Judged {
     Judged {
         name: name.to_owned(),
+        noun: noun(name, &parameters),
         kind,
         probability,
         log_evidence: -120.3 + 2.303 * log10_bayes_factor,
@@ -36,6 +41,19 @@ fn judged(
         form: None,
         parameters,
         variants: vec![],
+    }
+}
+
+/// As the catalogue calls it.
+fn noun(name: &str, parameters: &[Told]) -> Noun {
+    let times = vec![1.0, 2.0];
+    let series = Series::velocity(times, vec![1.0, 2.0]).unwrap();
+    let track = Track::incline(30.0, 100.0).unwrap();
+    let event = Event::on(track).velocity(series).build().unwrap();
+    let amplitude = parameters.first().map_or(f64::NAN, |p| p.q50);
+    match find(name, &event.extent(), &[]) {
+        Ok(mechanism) => mechanism.noun(amplitude),
+        Err(_) => Noun::one("a force that nothing describes"),
     }
 }
 
@@ -173,6 +191,8 @@ fn improvement() -> Improvement {
         heldout_rmse: pair(2.2, 0.35),
         coverage90: pair(0.5, 0.9),
         ljung_box_p: pair(1e-9, 0.4),
+        least_squares: pair(1.85, 0.30),
+        stationary_sd: pair(f64::NAN, f64::NAN),
     }
 }
 
@@ -227,6 +247,7 @@ pub(super) fn diagnosis() -> Diagnosis {
         mechanisms: mechanisms(),
         selected: vec!["friction-patch".to_owned()],
         group: vec!["friction-patch".to_owned()],
+        rivals: vec![],
         improvement: improvement(),
         separating: None,
         parameters: vec![
@@ -238,6 +259,7 @@ pub(super) fn diagnosis() -> Diagnosis {
             told("sigma2", "m2/s2", 0.096, 0.015),
         ],
         corrected: corrected(),
+        draws: None,
         forces: vec![
             force(Axis::Place, 260.0, 160.0, 44.0),
             force(Axis::Time, 18.0, 9.4, 41.5),
@@ -319,7 +341,7 @@ pub(super) fn all() -> Vec<Diagnosis> {
         adequate(),
         of(Verdict::Measurement, "clock-offset"),
         of(Verdict::Measurement, "initial-velocity"),
-        of(Verdict::Noise, "ar1"),
+        of(Verdict::Errors, "ar1"),
         of(Verdict::Unexplained, "unknown"),
         rich,
         Diagnosis::default(),

@@ -7,8 +7,10 @@ use super::attribute::Attribution;
 use super::diagnosis::{Judged, Told, Verdict};
 use super::fit::Fit;
 use super::locate::FreeForce;
-use crate::change::{Candidate, Mechanism};
-use crate::draws::{Summary, summarise};
+use crate::change::{Candidate, Mechanism, Noun};
+use crate::draws::{Summary, log_sum_exp, summarise};
+use crate::error::{Error, Result};
+use crate::physics::forces::Axis;
 
 /// What the user holds likely beforehand: odds by name, against 1 for every
 /// name not in it; `none` against all the others together.
@@ -16,9 +18,34 @@ pub type Odds = BTreeMap<String, f64>;
 
 /// ln of the mean of exp.
 fn log_mean(logs: &[f64]) -> f64 {
-    let top = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let sum: f64 = logs.iter().map(|l| (l - top).exp()).sum();
-    top + (sum / logs.len() as f64).ln()
+    log_sum_exp(logs.iter().copied()) - (logs.len() as f64).ln()
+}
+
+/// The names of a catalogue, each once.
+fn names(catalogue: &[Box<dyn Mechanism>]) -> Vec<&'static str> {
+    let mut names: Vec<&str> = Vec::new();
+    for mechanism in catalogue {
+        if !names.contains(&mechanism.name()) {
+            names.push(mechanism.name());
+        }
+    }
+    names
+}
+
+/// Refuses odds of what is not weighed.
+pub(super) fn check_odds(
+    odds: &Odds,
+    catalogue: &[Box<dyn Mechanism>],
+) -> Result<()> {
+    let known = [&["none", "unknown"], &names(catalogue)[..]].concat();
+    match odds.keys().find(|name| !known.contains(&name.as_str())) {
+        None => Ok(()),
+        Some(name) => Err(Error::input(format!(
+            "the odds of {name:?}: nothing of that name is weighed here; \
+             expected one of {}: take one of them, or drop it",
+            known.join(", ")
+        ))),
+    }
 }
 
 /// Judges the model as it was, every mechanism and the free-form force; most
@@ -32,19 +59,14 @@ pub(super) fn judge(
     let none = &found.none;
     let mut all = vec![Judged {
         name: "none".into(),
+        noun: Noun::one("the model as it was"),
         kind: "none",
         log_evidence: none.log_evidence,
         se: none.se,
         says: "Nothing is missing: the model as it is.".into(),
         ..Judged::default()
     }];
-    let mut names: Vec<&str> = Vec::new();
-    for mechanism in catalogue {
-        if !names.contains(&mechanism.name()) {
-            names.push(mechanism.name());
-        }
-    }
-    for name in names {
+    for name in names(catalogue) {
         all.push(judged(name, catalogue, &found.candidates));
     }
     all.push(unknown(forces, none));
@@ -75,15 +97,18 @@ fn judged(
         .iter()
         .max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence));
     let Some((mechanism, fit)) = best else { return Judged::default() };
+    let parameters = told(&summarise(&fit.draws)[..fit.added], Some(name));
+    let amplitude = parameters.first().map_or(f64::NAN, |p| p.q50);
     Judged {
         name: name.into(),
+        noun: mechanism.noun(amplitude),
         kind: mechanism.family().name(),
         log_evidence: log_mean(&logs),
         se: fit.se,
         says: mechanism.says().into(),
         coordinate: mechanism.coordinate(),
         form: mechanism.form(),
-        parameters: told(&summarise(&fit.draws)[..fit.added], Some(name)),
+        parameters,
         variants: variants
             .iter()
             .map(|(m, fit)| (m.label(), fit.log_evidence))
@@ -102,6 +127,9 @@ fn unknown(forces: &[FreeForce], none: &Fit) -> Judged {
         .max_by(|a, b| a.log_bayes_factor.total_cmp(&b.log_bayes_factor));
     Judged {
         name: "unknown".into(),
+        noun: Noun::one(
+            "a force that no mechanism of the catalogue describes",
+        ),
         kind: "unknown",
         log_evidence: log_mean(&logs),
         se: none.se,
@@ -129,10 +157,9 @@ fn weigh(all: &mut [Judged], odds: &Odds) {
             prior.ln() + m.log_evidence
         })
         .collect();
-    let top = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let total: f64 = logs.iter().map(|l| (l - top).exp()).sum();
+    let total = log_sum_exp(logs.iter().copied());
     for (one, log) in all.iter_mut().zip(logs) {
-        one.probability = (log - top).exp() / total;
+        one.probability = (log - total).exp();
     }
 }
 
@@ -142,7 +169,7 @@ pub(super) fn verdict(all: &[Judged]) -> Verdict {
         (&["none"], Verdict::Adequate),
         (&["physics"], Verdict::MissingPhysics),
         (&["measurement", "start"], Verdict::Measurement),
-        (&["noise"], Verdict::Noise),
+        (&["noise"], Verdict::Errors),
         (&["unknown"], Verdict::Unexplained),
     ];
     let mass = |kinds: &[&str]| -> f64 {
@@ -187,4 +214,36 @@ pub(super) fn told(summaries: &[Summary], within: Option<&str>) -> Vec<Told> {
             }
         })
         .collect()
+}
+
+/// The recording that would tell the members of a group apart.
+pub(super) fn separating(
+    group: &[String],
+    judged: &[Judged],
+) -> Option<String> {
+    if group.len() < 2 {
+        return None;
+    }
+    let of = |name: &String| judged.iter().find(|m| m.name == *name);
+    let members: Vec<&Judged> = group.iter().filter_map(of).collect();
+    let has = |kind: &str| members.iter().any(|m| m.kind == kind);
+    let along =
+        |axis: Axis| members.iter().any(|m| m.coordinate == Some(axis));
+    Some(if has("start") || has("measurement") {
+        "A second recording with another sensor, or of a mass released at a \
+         known place and moment, would tell them apart."
+            .into()
+    } else if along(Axis::Time) && along(Axis::Place) {
+        "A recording from another start would tell them apart: what belongs \
+         to a place stays there, what belongs to a moment moves along."
+            .into()
+    } else if has("noise") {
+        "A longer recording, or a second sensor on the same mass, would tell \
+         them apart."
+            .into()
+    } else {
+        "A recording at other speeds over the same ground, from a higher \
+         start or on another slope, would tell them apart."
+            .into()
+    })
 }

@@ -15,8 +15,10 @@ use rayon::prelude::*;
 
 use super::fit::Fit;
 use crate::block::List;
-use crate::change::{Candidate, Change, Family, Mechanism, Missing, Unknown};
-use crate::draws::Draws;
+use crate::change::{
+    Candidate, Change, Family, Mechanism, Missing, Noun, Unknown,
+};
+use crate::draws::{Draws, log_sum_exp};
 use crate::error::{Error, Result};
 use crate::infer::{Peak, climb};
 use crate::model::{Posterior, Program, With};
@@ -89,6 +91,10 @@ impl Candidate for FreeForm {
 
     fn family(&self) -> Family {
         Family::Physics
+    }
+
+    fn noun(&self, _amplitude: f64) -> Noun {
+        Noun::one("a force that no mechanism of the catalogue describes")
     }
 
     fn says(&self) -> &'static str {
@@ -285,13 +291,12 @@ fn force(
     axis: Axis,
     seed: Seed,
 ) -> Result<FreeForce> {
-    let top = nodes.iter().map(|n| n.log_weight).fold(f64::MIN, f64::max);
-    let total: f64 = nodes.iter().map(|n| (n.log_weight - top).exp()).sum();
+    let total = log_sum_exp(nodes.iter().map(|n| n.log_weight));
     let all = (LENGTHS * SIZES) as f64;
     let mut rng = seed.rng();
     let mut draws = Vec::with_capacity(DRAWS);
     for node in nodes {
-        let share = (node.log_weight - top).exp() / total;
+        let share = (node.log_weight - total).exp();
         let count = (share * DRAWS as f64).round() as usize;
         for line in normal_draws(&node.peak, count, &mut rng) {
             let waves = line.rows(0, CELLS).into_owned();
@@ -307,7 +312,7 @@ fn force(
         .collect();
     let (mean, sd) = moments(&draws);
     let width = simultaneous(&draws, &mean, &sd);
-    let log_bayes_factor = top + (total / all).ln() - baseline;
+    let log_bayes_factor = total - all.ln() - baseline;
     let best = nodes
         .iter()
         .max_by(|a, b| a.log_weight.total_cmp(&b.log_weight))

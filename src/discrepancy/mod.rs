@@ -5,13 +5,17 @@ pub mod mechanisms;
 
 mod attribute;
 mod before_and_after;
+mod check;
+mod choose;
 mod diagnose;
 mod diagnosis;
 mod fit;
 #[cfg(test)]
 mod fixture;
 mod judge;
+mod least_squares;
 mod locate;
+mod options;
 mod page;
 mod paste;
 mod phrases;
@@ -24,14 +28,15 @@ mod together;
 mod words;
 
 pub use attribute::{Attribution, attribute, pair};
-pub use diagnose::{Options, diagnose, diagnose_together};
+pub use diagnose::{diagnose, diagnose_together};
 pub use diagnosis::{
     Baseline, Corrected, Diagnosis, Improvement, Judged, Mismatch, Pair,
-    Pictured, Told, Verdict,
+    Pictured, Rival, Told, Verdict,
 };
 pub use fit::{Fit, fit};
 pub use judge::Odds;
 pub use locate::{CELLS, FreeForce, locate};
+pub use options::Options;
 pub use page::page;
 pub use summary::summary;
 pub use together::{PerEvent, Pooled, Sharing, Together};

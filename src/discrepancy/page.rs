@@ -2,13 +2,13 @@
 
 use maud::{Markup, PreEscaped, html};
 
-use super::phrases::{friction, is_synthetic};
+use super::phrases::friction;
 use super::pictures::{Figure, bars, forces, recording, track};
 use super::words::{before_and_after, in_words, is_corrected};
 use super::{Diagnosis, Pictured, Told, Verdict};
 use crate::report::digits::{beside, significant};
 use crate::report::standalone;
-use crate::report::text::{plain, unit};
+use crate::report::text::{is_synthetic, plain, unit};
 
 /// `report.html` of a diagnosis: in words first, then what was located, both
 /// models on the recordings, the evidence, and the corrected model.
@@ -44,7 +44,7 @@ fn heading(d: &Diagnosis) -> Markup {
     html! {
         h1 { (plain(&d.event)) }
         p.sub {
-            @if is_synthetic(d) { span.synthetic { "synthetic data" } " " }
+            @if is_synthetic(&d.event) { span.synthetic { "synthetic data" } " " }
             "What is missing from " (friction(&d.baseline))
             @if !noise.is_empty() { " with " (plain(noise)) " errors" }
         }
@@ -82,7 +82,7 @@ fn headline(verdict: Verdict) -> &'static str {
         Verdict::Adequate => "Verdict: adequate, nothing is missing",
         Verdict::MissingPhysics => "Verdict: missing physics",
         Verdict::Measurement => "Verdict: the start or the measurement is off",
-        Verdict::Noise => "Verdict: errors of another kind",
+        Verdict::Errors => "Verdict: errors of another kind",
         Verdict::Unexplained => "Verdict: unexplained",
     }
 }
@@ -137,7 +137,7 @@ fn sentences(d: &Diagnosis) -> Markup {
     let told: Vec<_> = d
         .mechanisms
         .iter()
-        .filter(|m| !m.says.is_empty() && m.name != "none")
+        .filter(|m| !m.says.is_empty() && m.kind != "none")
         .filter(|m| m.probability >= 0.01 || d.selected.contains(&m.name))
         .take(5)
         .collect();

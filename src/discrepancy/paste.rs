@@ -2,14 +2,23 @@
 
 use std::fmt::Write as _;
 
+use super::diagnosis::Corrected;
+use super::options::Options;
 use crate::change::Mechanism;
 use crate::model::Assembled;
 use crate::physics::friction::LAWS;
 use crate::prior::AnyPrior;
 
 /// The blocks of a model as `model!` declares them: friction, then errors.
-/// `None` where a law is not one of the crate's own.
+/// `None` where a law is not one of the crate's own, or a mechanism has
+/// another prior than its own.
 pub(super) fn declarations(model: &Assembled) -> Option<[String; 2]> {
+    let own: Vec<_> = model.mechanisms().flat_map(|m| m.unknowns()).collect();
+    let blocks = model.friction_dimension() + model.noise_dimension();
+    let given = model.priors().skip(blocks).map(|(_, prior)| *prior);
+    if !given.eq(own.iter().map(|unknown| unknown.prior)) {
+        return None;
+    }
     let mut priors = model.priors().map(|(_, prior)| *prior);
     let friction = model.friction();
     let terms = friction
@@ -61,8 +70,31 @@ fn rust(prior: AnyPrior) -> String {
     format!("{}({})", prior.name(), arguments.join(", "))
 }
 
+/// The corrected model, written out: the mechanisms that the model had, and
+/// those added to it.
+pub(super) fn corrected(
+    added: &[&dyn Mechanism],
+    options: &Options,
+    quantity: &str,
+) -> Corrected {
+    let had = options.mechanisms.iter().map(|m| m.as_ref() as &dyn Mechanism);
+    let all: Vec<&dyn Mechanism> = had.chain(added.iter().copied()).collect();
+    let law = format!("du/dt = g sin(theta) - r, r of {}", options.friction);
+    let terms = all.iter().map(|m| format!("{}: {}", m.name(), m.formula()));
+    let equation = [law].into_iter().chain(terms).collect();
+    if added.is_empty() {
+        return Corrected { equation, ..Corrected::default() };
+    }
+    let model = options
+        .declarations
+        .as_ref()
+        .map_or_else(String::new, |own| model_text(&all, own, quantity));
+    let labels = all.iter().map(|m| m.label()).collect();
+    Corrected { equation, model, labels }
+}
+
 /// A program with the model and the mechanisms added to it.
-pub(super) fn model_text(
+fn model_text(
     mechanisms: &[&dyn Mechanism],
     blocks: &[String; 2],
     quantity: &str,
@@ -70,13 +102,14 @@ pub(super) fn model_text(
     let [friction, errors] = blocks;
     let mut text = format!(
         "use couloir::discrepancy::mechanisms::find;\n\
+         use couloir::infer::Evidence;\n\
          use couloir::model::With;\n\
          use couloir::prelude::*;\n\n\
          model! {{\n    struct Before {{ event: Event }}\n    \
          friction ~ {friction};\n    errors ~ {errors};\n    \
          likelihood {{\n        let flow = event.slide(&friction)?;\n        \
          event.{quantity} ~ flow.{quantity}() + errors;\n    }}\n}}\n\n\
-         fn log_evidence(event: Event) -> Result<Option<f64>> {{\n    \
+         fn evidence(event: Event) -> Result<Option<Evidence>> {{\n    \
          let extent = event.extent();\n    \
          let before = Before::new(event);\n"
     );
@@ -97,7 +130,7 @@ pub(super) fn model_text(
          let posterior = Posterior::new(&corrected)?;\n    \
          let found = infer(&Smc::default(), &posterior, Seed::new(1), \
          &Quiet)?;\n    \
-         Ok(found.evidence.map(|evidence| evidence.log))\n}}\n"
+         Ok(found.evidence)\n}}\n"
     );
     text
 }

@@ -3,66 +3,11 @@
 use super::{Baseline, Diagnosis, Judged, Mismatch, Told};
 use crate::physics::forces::Axis;
 use crate::report::digits::{beside, short, significant};
-use crate::report::text::{plain, unit};
+use crate::report::text::{is_synthetic, plain, unit};
 
-/// Mechanisms whose words are the same whatever their size.
-const NAMES: [(&str, &str); 18] = [
-    ("none", "the model as it was"),
-    ("unknown", "a force that no mechanism of the catalogue describes"),
-    ("turbulent-drag", "drag that grows with the square of the speed"),
-    ("viscous-drag", "drag in proportion to the speed"),
-    ("cohesion", "a constant resistance"),
-    ("velocity-weakening", "dry friction that falls with speed"),
-    ("curvature", "the load of the bends on the friction"),
-    ("entrainment", "entrainment of snow along a stretch"),
-    ("initial-velocity", "a start that was already moving"),
-    ("release-position", "a release at another place"),
-    ("clock-offset", "a clock that is off"),
-    ("velocity-scale", "a reading off by a constant factor"),
-    ("sensor-drift", "a sensor that drifts"),
-    ("averaging-window", "values that are means over a while"),
-    ("slope-bias", "a track whose slope is off"),
-    ("ar1", "errors correlated in time"),
-    ("heavy-tails", "outliers among the errors"),
-    ("unequal-variance", "errors of unequal size"),
-];
-
-/// A mechanism as a snow scientist would call it; the sign of its amplitude
-/// and along what it acts go into the words.
+/// A mechanism as a snow scientist would call it.
 pub(super) fn called(m: &Judged) -> String {
-    if let Some((_, words)) = NAMES.iter().find(|n| n.0 == m.name) {
-        return (*words).to_owned();
-    }
-    let amount = m.parameters.first().map_or(f64::NAN, |p| p.q50);
-    let or = |more: &'static str, less: &'static str, open: &'static str| {
-        match amount {
-            x if x > 0.0 => more,
-            x if x < 0.0 => less,
-            _ => open,
-        }
-    };
-    let time = m.coordinate == Some(Axis::Time);
-    match m.name.as_str() {
-        "friction-patch" => {
-            format!("a patch of {} friction", or("higher", "lower", "other"))
-        }
-        "friction-step" => {
-            let step =
-                if time { "from a moment on" } else { "beyond a place" };
-            let how = or("higher", "lower", "different");
-            format!("friction that is {how} {step}")
-        }
-        "friction-hardening" => {
-            let along = if time { "time" } else { "distance" };
-            let how = or("rises", "falls", "changes");
-            format!("friction that {how} steadily with {along}")
-        }
-        "surge" => {
-            let what = or("a push", "a brake", "a force");
-            format!("{what} that lasts a while")
-        }
-        other => format!("“{}”", plain(other)),
-    }
+    plain(&m.noun.words)
 }
 
 /// The mechanism of that name, where it was weighed.
@@ -102,10 +47,11 @@ pub(super) fn capital(words: &str) -> String {
 
 /// The friction of a model, before “gives”.
 pub(super) fn friction(b: &Baseline) -> String {
-    match b.friction.trim() {
+    let law = match b.friction.trim() {
         "" | "none" => "gravity alone".to_owned(),
         law => format!("{} friction", capital(&plain(law))),
-    }
+    };
+    b.mechanisms.iter().fold(law, |law, had| law + " plus " + &plain(had))
 }
 
 /// The model as it was: “Voellmy friction with iid errors”.
@@ -118,16 +64,11 @@ pub(super) fn model(b: &Baseline) -> String {
 
 /// The event's name in quotes, and whether nature made it.
 pub(super) fn event(d: &Diagnosis) -> String {
-    let origin = if is_synthetic(d) { " (synthetic data)" } else { "" };
+    let origin = if is_synthetic(&d.event) { " (synthetic data)" } else { "" };
     match d.event.trim() {
         "" => format!("the recording{origin}"),
         name => format!("“{}”{origin}", plain(name)),
     }
-}
-
-/// Whether the recording was computed: it says so in its name.
-pub(super) fn is_synthetic(d: &Diagnosis) -> bool {
-    d.event.to_lowercase().contains("synthetic")
 }
 
 /// A figure with its unit.

@@ -1,6 +1,7 @@
 //! Where the mismatch is, as it is told: stretches with force and sign.
 
-use super::diagnosis::{Mismatch, Pictured, Verdict};
+use super::before_and_after::recordings;
+use super::diagnosis::{Diagnosis, Mismatch, Pictured, Verdict};
 use super::locate::{FreeForce, Stretch};
 use crate::change::Reach;
 use crate::observe::Event;
@@ -17,25 +18,25 @@ pub(super) fn mismatch(
     verdict: Verdict,
     reaches: &[Reach],
     forces: &[FreeForce],
-    event: &Event,
-    pictured: &Pictured,
+    events: &[&Event],
+    pictured: &[Pictured],
 ) -> Vec<Mismatch> {
     if verdict == Verdict::Adequate {
         return Vec::new();
     }
     let along = |axis: Axis| forces.iter().find(|f| f.axis == axis);
-    let course = Course::new(event, pictured);
+    let courses = Courses::new(events, pictured);
     if !reaches.is_empty() {
         return reaches
             .iter()
             .filter_map(|reach| {
                 let force = along(reach.axis)?;
-                let end = course.end(reach.axis);
+                let end = courses.end(reach.axis);
                 let stretch = Stretch {
                     from: reach.from,
                     to: reach.to.min(end).max(reach.from),
                 };
-                Some(course.mismatch(force, stretch, Vec::new()))
+                courses.mismatch(force, stretch, Vec::new())
             })
             .collect();
     }
@@ -46,7 +47,7 @@ pub(super) fn mismatch(
     }
     joined(&runs)
         .into_iter()
-        .map(|(stretch, parts)| course.mismatch(force, stretch, parts))
+        .filter_map(|(stretch, parts)| courses.mismatch(force, stretch, parts))
         .collect()
 }
 
@@ -65,7 +66,43 @@ fn joined(runs: &[Stretch]) -> Vec<(Stretch, Vec<Stretch>)> {
     joined
 }
 
-/// When the mass is where, by the corrected model.
+/// When each recorded mass is where, by the corrected model.
+struct Courses<'a>(Vec<Course<'a>>);
+
+impl<'a> Courses<'a> {
+    fn new(events: &[&'a Event], pictured: &[Pictured]) -> Self {
+        let owners = recordings(events).into_iter().zip(pictured);
+        Self(owners.map(|((event, _), p)| Course::new(event, p)).collect())
+    }
+
+    /// Where or when the last of them ends.
+    fn end(&self, axis: Axis) -> f64 {
+        let ends = self.0.iter().map(|course| course.ends(axis)[1]);
+        ends.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// What is told of a stretch: times, and the load of the ground, by the
+    /// course that covers most of it, the first of equals.
+    fn mismatch(
+        &self,
+        force: &FreeForce,
+        stretch: Stretch,
+        parts: Vec<Stretch>,
+    ) -> Option<Mismatch> {
+        let covered = |course: &Course| {
+            let [first, last] = course.ends(force.axis);
+            stretch.to.min(last) - stretch.from.max(first)
+        };
+        let most = |best, other| match covered(other) > covered(best) {
+            true => other,
+            false => best,
+        };
+        let course = self.0.iter().reduce(most)?;
+        Some(course.mismatch(force, stretch, parts))
+    }
+}
+
+/// When one mass is where.
 struct Course<'a> {
     event: &'a Event,
     times: Vec<f64>,
@@ -86,9 +123,10 @@ impl<'a> Course<'a> {
         Self { event, times, places }
     }
 
-    fn end(&self, axis: Axis) -> f64 {
+    /// Where or when it begins and ends.
+    fn ends(&self, axis: Axis) -> [f64; 2] {
         let of = if axis == Axis::Time { &self.times } else { &self.places };
-        of[of.len() - 1]
+        [of[0], of[of.len() - 1]]
     }
 
     fn time_at(&self, place: f64) -> f64 {
@@ -162,4 +200,108 @@ fn between(x: &[f64], y: &[f64], at: f64) -> f64 {
     let step = x[i] - x[i - 1];
     let share = if step > 0.0 { (at - x[i - 1]) / step } else { 0.0 };
     y[i - 1] + share * (y[i] - y[i - 1])
+}
+
+/// Marks the mismatch on the tracks, as far as they go.
+pub(super) fn mark(diagnosis: &mut Diagnosis, events: &[&Event]) {
+    let owners = recordings(events);
+    for (pictured, (event, _)) in diagnosis.pictured.iter_mut().zip(owners) {
+        let track = event.track();
+        for m in &diagnosis.mismatch {
+            let on = |place: f64| place - track.origin();
+            let from = on(m.place_from).max(0.0);
+            let to = on(m.place_to).min(track.length());
+            if from > to {
+                continue;
+            }
+            let steps = 24;
+            pictured.marked.extend((0..=steps).map(|i| {
+                let share = f64::from(i) / f64::from(steps);
+                track.position(from + share * (to - from))
+            }));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::discrepancy::CELLS;
+    use crate::observe::Series;
+    use crate::physics::Track;
+
+    /// A mass that goes at 10 m/s for 10 s from its track's first point.
+    fn event(origin: f64) -> (Event, Pictured) {
+        let times: Vec<f64> = (1..=10).map(f64::from).collect();
+        let series = Series::velocity(times.clone(), vec![10.0; 10]).unwrap();
+        let track = Track::incline(20.0, 200.0).unwrap().with_origin(origin);
+        let event = Event::on(track).release(0.0, 10.0).velocity(series);
+        let places = times.iter().map(|t| origin + 10.0 * t).collect();
+        let pictured = Pictured { times, places, ..Pictured::default() };
+        (event.build().unwrap(), pictured)
+    }
+
+    /// A brake of 1 m/s2 in every cell over 300 m.
+    fn force() -> FreeForce {
+        let step = 300.0 / CELLS as f64;
+        FreeForce {
+            axis: Axis::Place,
+            at: (0..CELLS).map(|i| (i as f64 + 0.5) * step).collect(),
+            mean: vec![-1.0; CELLS],
+            sd: vec![0.1; CELLS],
+            width: 2.0,
+            draws: vec![vec![-1.0; CELLS]; 2],
+            log_bayes_factor: 0.0,
+            process: (20.0, 1.0),
+        }
+    }
+
+    #[test]
+    fn a_stretch_is_told_by_the_event_that_passes_it() {
+        let (upper, of_upper) = event(0.0);
+        let (lower, of_lower) = event(150.0);
+        let pictured = [of_upper, of_lower];
+        let told = |from: f64, to: f64| {
+            let reach = Reach { axis: Axis::Place, from, to };
+            let verdict = Verdict::MissingPhysics;
+            let events = [&upper, &lower];
+            mismatch(verdict, &[reach], &[force()], &events, &pictured)
+                .remove(0)
+        };
+        // Each mass is at `origin + 10 t`.
+        for (from, to, begins, ends) in
+            [(20.0, 60.0, 2.0, 6.0), (180.0, 220.0, 3.0, 7.0)]
+        {
+            let m = told(from, to);
+            assert_eq!((m.from, m.to), (from, to));
+            assert!((m.time_from - begins).abs() < 1e-9, "{}", m.time_from);
+            assert!((m.time_to - ends).abs() < 1e-9, "{}", m.time_to);
+        }
+        // A step of the friction goes on to where the last mass does.
+        assert_eq!(told(180.0, f64::INFINITY).to, 250.0);
+    }
+
+    #[test]
+    fn a_track_is_marked_where_it_has_the_stretch() {
+        let (upper, of_upper) = event(0.0);
+        let (lower, of_lower) = event(250.0);
+        let m = Mismatch { place_from: 20.0, place_to: 60.0, ..mismatched() };
+        let mut d = Diagnosis {
+            mismatch: vec![m],
+            pictured: vec![of_upper, of_lower],
+            ..Diagnosis::default()
+        };
+        mark(&mut d, &[&upper, &lower]);
+        let x = 20.0 * 20.0_f64.to_radians().cos();
+        assert!((d.pictured[0].marked[0].0 - x).abs() < 1e-9);
+        assert!(d.pictured[1].marked.is_empty());
+    }
+
+    fn mismatched() -> Mismatch {
+        let (event, pictured) = event(0.0);
+        let reach = Reach { axis: Axis::Place, from: 0.0, to: 1.0 };
+        let verdict = Verdict::MissingPhysics;
+        mismatch(verdict, &[reach], &[force()], &[&event], &[pictured])
+            .remove(0)
+    }
 }

@@ -3,6 +3,7 @@
 use super::fixture::{adequate, all, diagnosis, of};
 use super::pictures::{Figure, bars, forces, recording, track};
 use super::*;
+use crate::report::fixture::assert_unique_ids;
 
 const HOSTILE: &str = "<script>alert(1)</script>&\"'\u{1b}[31m";
 
@@ -123,6 +124,8 @@ fn broken() -> Diagnosis {
         heldout_rmse: pair,
         coverage90: pair,
         ljung_box_p: pair,
+        least_squares: pair,
+        stationary_sd: pair,
     };
     for m in &mut d.mismatch {
         (m.from, m.to, m.time_from, m.place_to) = (nan, nan, nan, nan);
@@ -204,6 +207,7 @@ fn hostile_names_come_out_as_text() {
     }
     for m in &mut d.mechanisms {
         (m.name, m.says) = (HOSTILE.to_owned(), HOSTILE.to_owned());
+        m.noun.words = HOSTILE.to_owned();
     }
     let html = page(&d);
     assert!(!html.contains("<script"));
@@ -225,15 +229,7 @@ fn the_page_stands_alone() {
         for outside in ["http", "//", "<script", "<link", "@import", "src="] {
             assert!(!inner.contains(outside), "{outside}");
         }
-        let mut ids: Vec<&str> = html
-            .split(" id=\"")
-            .skip(1)
-            .filter_map(|rest| rest.split('"').next())
-            .collect();
-        let count = ids.len();
-        ids.sort_unstable();
-        ids.dedup();
-        assert_eq!(ids.len(), count);
+        assert_unique_ids(&html);
     }
     let html = page(&diagnosis());
     assert_eq!(html.matches("<svg").count(), 4);

@@ -9,7 +9,8 @@
 
 use crate::block::List;
 use crate::change::{
-    Candidate, Change, ChangeKind, ChangeOf, Family, Mechanism, Reach, Unknown,
+    Candidate, Change, ChangeKind, ChangeOf, Family, Mechanism, Noun, Reach,
+    Unknown,
 };
 use crate::error::{Error, Outcome, Result};
 use crate::model::{Assembled, Number, Program, Run};
@@ -18,7 +19,7 @@ use crate::physics::forces::Axis;
 use crate::prior::AnyPrior;
 use crate::scalar::Real;
 
-use super::mechanisms::{catalogue, find};
+use super::mechanisms::{catalogue, find, is_held};
 
 /// How many characters a label has at the most.
 const LONGEST: usize = 16;
@@ -91,31 +92,26 @@ impl Together {
     /// Every mechanism that applies: those of the physics to all events, with
     /// amounts shared as told; the others to each on its own.
     pub fn catalogue(&self, sharing: Sharing) -> Vec<Box<dyn Mechanism>> {
-        let mut blocks: Vec<String> =
-            self.events.iter().flat_map(Assembled::blocks).collect();
-        blocks.retain(|name| self.is_in_physics_or_everywhere(name));
-        catalogue(&self.extent(), &blocks)
+        catalogue(&self.extent(), &[])
             .into_iter()
             .filter_map(|mechanism| self.spread(mechanism, sharing))
             .collect()
     }
 
-    /// Laws count where any event has them; a noise only where all do, since
-    /// each event is asked on its own.
-    fn is_in_physics_or_everywhere(&self, name: &str) -> bool {
-        let noise = |event: &Assembled| {
-            event.blocks().last().is_some_and(|own| own == name)
-        };
-        !self.events.iter().any(noise) || self.events.iter().all(noise)
+    /// Whether any event's model has the mechanism already.
+    fn has(&self, mechanism: &dyn Mechanism) -> bool {
+        self.events.iter().any(|event| is_held(mechanism, &event.blocks()))
     }
 
-    /// A mechanism of the catalogue as it is for several events.
+    /// A mechanism of the catalogue as it is for several events; `None` where
+    /// a law of any has it, or the noise or the sensor of all.
     fn spread(
         &self,
         mechanism: Box<dyn Mechanism>,
         sharing: Sharing,
     ) -> Option<Box<dyn Mechanism>> {
         match (mechanism.family(), sharing) {
+            (Family::Physics, _) if self.has(mechanism.as_ref()) => None,
             (Family::Physics, Sharing::Shared) => Some(mechanism),
             (Family::Physics, Sharing::Pooled) => {
                 Some(Box::new(Pooled::new(mechanism, &self.labels)))
@@ -202,11 +198,20 @@ fn labels<'n>(names: impl Iterator<Item = &'n str>) -> Vec<String> {
     labels
 }
 
+/// An event's own mechanism.
+#[derive(Debug)]
+struct Own {
+    /// Which event.
+    event: usize,
+    mechanism: Box<dyn Mechanism>,
+    /// How much is unknown about it.
+    count: usize,
+}
+
 /// A mechanism that each of several events has in an amount of its own.
 #[derive(Debug)]
 pub struct PerEvent {
-    /// Those of the events to which it applies, with which event it is.
-    each: Vec<(usize, Box<dyn Mechanism>)>,
+    each: Vec<Own>,
     events: usize,
     unknowns: Vec<Unknown>,
 }
@@ -219,33 +224,20 @@ impl PerEvent {
         labels: &[String],
     ) -> Option<Self> {
         let events = each.len();
-        let each: Vec<_> = each
-            .into_iter()
-            .enumerate()
-            .filter_map(|(i, mechanism)| Some((i, mechanism?)))
-            .collect();
-        let unknowns = each
-            .iter()
-            .zip(labels_of(&each, labels))
-            .flat_map(|((_, mechanism), label)| {
-                let own = mechanism.unknowns().into_iter();
-                own.map(move |unknown| of_event(&unknown, label))
-            })
-            .collect();
-        (!each.is_empty()).then_some(Self { each, events, unknowns })
+        let (mut own, mut unknowns) = (Vec::new(), Vec::new());
+        for (event, mechanism) in each.into_iter().enumerate() {
+            let Some(mechanism) = mechanism else { continue };
+            let label = labels.get(event).map_or("", String::as_str);
+            let added = mechanism.unknowns();
+            own.push(Own { event, mechanism, count: added.len() });
+            unknowns.extend(added.iter().map(|one| of_event(one, label)));
+        }
+        (!own.is_empty()).then_some(Self { each: own, events, unknowns })
     }
 
     fn one(&self) -> &dyn Mechanism {
-        self.each[0].1.as_ref()
+        self.each[0].mechanism.as_ref()
     }
-}
-
-fn labels_of<'l>(
-    each: &[(usize, Box<dyn Mechanism>)],
-    labels: &'l [String],
-) -> Vec<&'l str> {
-    let label = |i: usize| labels.get(i).map_or("", String::as_str);
-    each.iter().map(|(i, _)| label(*i)).collect()
 }
 
 fn of_event(unknown: &Unknown, label: &str) -> Unknown {
@@ -264,6 +256,9 @@ macro_rules! says_as {
         }
         fn family(&self) -> Family {
             self.$inner().family()
+        }
+        fn noun(&self, amplitude: f64) -> Noun {
+            self.$inner().noun(amplitude)
         }
         fn says(&self) -> &'static str {
             self.$inner().says()
@@ -300,9 +295,9 @@ impl<K: ChangeKind> ChangeOf<K> for PerEvent {
     fn change_of(&self, values: &[Real<K>]) -> Change<K> {
         let mut own = vec![Change::default(); self.events];
         let mut rest = values;
-        for (i, mechanism) in &self.each {
-            let (values, others) = rest.split_at(mechanism.unknowns().len());
-            own[*i] = K::change(mechanism.as_ref(), values);
+        for Own { event, mechanism, count } in &self.each {
+            let (values, others) = rest.split_at(*count);
+            own[*event] = K::change(mechanism.as_ref(), values);
             rest = others;
         }
         Change { own, ..Change::default() }

@@ -55,7 +55,7 @@ fn verdict(d: &Diagnosis) -> String {
     let (model, event) = (model(&d.baseline), event(d));
     match d.verdict {
         Verdict::Adequate => {
-            let sure = d.mechanisms.iter().find(|m| m.name == "none");
+            let sure = d.mechanisms.iter().find(|m| m.kind == "none");
             let sure = sure.map_or(String::new(), |m| {
                 format!(" (probability {})", probability(m.probability))
             });
@@ -72,7 +72,7 @@ fn verdict(d: &Diagnosis) -> String {
              the model has it.",
             if of_start(d) { "start" } else { "measurement" }
         ),
-        Verdict::Noise => format!(
+        Verdict::Errors => format!(
             "No force is missing from {}: the errors of {event} are not {} \
              ones.",
             friction(&d.baseline),
@@ -97,7 +97,7 @@ fn difference(d: &Diagnosis, m: &Mismatch) -> String {
         matches!(d.verdict, Verdict::MissingPhysics | Verdict::Unexplained);
     let (be, more) = if real { ("is", "") } else { ("seems to be", "only ") };
     let end = match d.verdict {
-        Verdict::Noise => "; errors of another kind do that without a force",
+        Verdict::Errors => "; errors of another kind do that without a force",
         _ => "",
     };
     let size = m.specific_force.abs();
@@ -172,12 +172,13 @@ fn explanation(d: &Diagnosis) -> String {
         }
         [best] if d.selected.len() == 1 => format!(
             "{what} {} this (probability {}){}.",
-            verb(&what),
+            if best.noun.plural { "explain" } else { "explains" },
             probability(best.probability),
             rival(d)
         ),
         _ => format!(
-            "{what} explain this; alone, {}.",
+            "{what} explain this{}; alone, {}.",
+            instead(d),
             found
                 .iter()
                 .map(|m| format!(
@@ -191,20 +192,30 @@ fn explanation(d: &Diagnosis) -> String {
     }
 }
 
-fn verb(what: &str) -> &'static str {
-    let several = ["Errors", "Outliers", "Values"];
-    if several.iter().any(|w| what.starts_with(w)) {
-        "explain"
-    } else {
-        "explains"
-    }
+/// What would do nearly as well as one of several selected.
+fn instead(d: &Diagnosis) -> String {
+    let Some(first) = d.rivals.first() else { return String::new() };
+    let given_up = d.selected.iter().find(|n| !first.names.contains(n));
+    let others = d.rivals.iter().flat_map(|rival| &rival.names);
+    let mut named: Vec<String> =
+        others.filter(|n| !d.selected.contains(n)).cloned().collect();
+    named.dedup();
+    named.truncate(TOLD);
+    given_up.map_or(String::new(), |given_up| {
+        format!(
+            ", and with {} instead of {} nearly as well",
+            all_called(d, &named, "or"),
+            all_called(d, std::slice::from_ref(given_up), "and"),
+        )
+    })
 }
 
 fn unexplained(d: &Diagnosis) -> String {
-    let sure = judged(d, "unknown").map_or(String::new(), |m| {
+    let force = d.mechanisms.iter().find(|m| m.kind == "unknown");
+    let sure = force.map_or(String::new(), |m| {
         format!(" (probability {})", probability(m.probability))
     });
-    let named = |m: &&Judged| !matches!(m.name.as_str(), "unknown" | "none");
+    let named = |m: &&Judged| !matches!(m.kind, "unknown" | "none");
     let near = match d.mechanisms.iter().find(named) {
         Some(m) => format!(
             "; of the named ones {} comes nearest ({})",
@@ -340,7 +351,7 @@ fn trap(d: &Diagnosis) -> Option<String> {
     let units = recorded_in(d);
     let sd = with_unit(&significant(sd, 2), units);
     let end = match d.verdict {
-        Verdict::Adequate | Verdict::Noise => {
+        Verdict::Adequate | Verdict::Errors => {
             "noise of that size may have swallowed a mismatch, so this \
              verdict is weak"
         }
@@ -417,7 +428,7 @@ fn residuals(b: &Baseline) -> String {
 
 /// What would come next, where nothing is missing.
 fn nearest(d: &Diagnosis) -> Option<String> {
-    let others = || d.mechanisms.iter().filter(|m| m.name != "none");
+    let others = || d.mechanisms.iter().filter(|m| m.kind != "none");
     let m = others().next()?;
     Some(format!(
         "Of {} things that could be missing, the most probable is {} \
@@ -481,14 +492,19 @@ pub(super) fn before_and_after(d: &Diagnosis) -> Vec<Row> {
         x if x.is_finite() => format!("{x:.1}"),
         x => significant(x, 2),
     };
-    vec![
+    let mut rows = vec![
         row("log10 Bayes factor".to_owned(), evidence, log10),
         row(format!("RMSE{units}"), rmse, two),
+        row(format!("RMSE, least squares{units}"), i.least_squares, two),
         row(format!("RMSE, last 30 %{units}"), i.heldout_rmse, two),
         row("elpd (PSIS-LOO)".to_owned(), i.elpd, one),
         row("values in the 90 % band".to_owned(), i.coverage90, per_cent),
         row("Ljung-Box p".to_owned(), i.ljung_box_p, p_value),
-    ]
+    ];
+    if i.stationary_sd.before.is_finite() {
+        rows.push(row(format!("AR(1) sd{units}"), i.stationary_sd, two));
+    }
+    rows
 }
 
 /// The baseline's own figure, where nothing was corrected.

@@ -52,7 +52,8 @@ pub use loo::{
     Loo, generalised_pareto, k_threshold, loo, psis, sum_and_error,
 };
 pub use residual::{
-    LjungBox, ShapiroWilk, autocorrelation, ljung_box, shapiro_wilk,
+    LjungBox, ShapiroWilk, autocorrelation, ljung_box, normal_p, shapiro_wilk,
+    uncorrelated_p,
 };
 pub use rhat::rhat;
 pub(crate) use summary::median;

@@ -58,6 +58,24 @@ pub fn ljung_box(x: &[f64], lags: usize, fitted: usize) -> Option<LjungBox> {
     statistic.is_finite().then_some(LjungBox { statistic, freedom, p })
 }
 
+/// The p of [`ljung_box`] for innovations, NaN where there is none: over ten
+/// lags, or a fifth of the length where that is less (Hyndman &
+/// Athanasopoulos 2021, "Forecasting: Principles and Practice", section 5.4).
+pub fn uncorrelated_p(innovations: &[f64]) -> f64 {
+    let lags = (innovations.len() / 5).clamp(1, 10);
+    ljung_box(innovations, lags, 0).map_or(f64::NAN, |test| test.p)
+}
+
+/// The p of [`shapiro_wilk`] for innovations, NaN where there is none: of the
+/// first 5000, for which its approximations hold.
+pub fn normal_p(innovations: &[f64]) -> f64 {
+    let first = &innovations[..innovations.len().min(MOST)];
+    shapiro_wilk(first).map_or(f64::NAN, |test| test.p)
+}
+
+/// The longest sample that Royston's approximations hold for.
+const MOST: usize = 5000;
+
 /// A test that a sample is normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShapiroWilk {
@@ -81,7 +99,7 @@ pub struct ShapiroWilk {
 pub fn shapiro_wilk(x: &[f64]) -> Option<ShapiroWilk> {
     let n = x.len();
     let finite = x.iter().all(|v| v.is_finite());
-    if !(3..=5000).contains(&n) || !finite {
+    if !(3..=MOST).contains(&n) || !finite {
         return None;
     }
     let x = sorted(x.to_vec());

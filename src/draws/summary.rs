@@ -101,6 +101,7 @@ pub fn quantile(sorted: &[f64], p: f64) -> f64 {
     let below = sorted[position.floor() as usize];
     let above = sorted[position.ceil() as usize];
     match position.fract() {
+        _ if below == above => below,
         0.0 => below,
         fraction => below + fraction * (above - below),
     }
@@ -138,6 +139,7 @@ mod tests {
         assert!(quantile(&sorted(vec![-f64::NAN, 1.0]), 0.1).is_nan());
         let infinite = [f64::NEG_INFINITY, f64::INFINITY];
         assert_eq!(quantile(&infinite, 1.0), f64::INFINITY);
+        assert_eq!(median(&[f64::INFINITY; 2]), f64::INFINITY);
     }
 
     #[test]

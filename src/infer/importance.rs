@@ -143,8 +143,9 @@ impl ImportanceSampling {
 
     /// A proposal with more components where given draws or its own show that
     /// it is far too low (incremental mixture importance sampling, Raftery,
-    /// Bao 2010), and whether its last draws show no such place any more. A mixture of a few components fits the bulk, whatever it
-    /// leaves out of a bent tail.
+    /// Bao 2010), and whether its last draws show no such place any more. A
+    /// mixture of a few components fits the bulk, whatever it leaves out of a
+    /// bent tail.
     fn mended(
         &self,
         posterior: &Posterior<'_>,
@@ -204,25 +205,29 @@ fn fit(rows: &[Vec<f64>], weights: &[f64], seed: Seed) -> Base {
 }
 
 /// What a mixture is refitted to: the given draws and the proposal's own, with
-/// half of the weight each. The given draws keep every mode in, and the
-/// proposal's weights are cut at the square root of their number times the
-/// mean (Ionides 2008), so that no single draw makes a component.
+/// half of the weight each. The given draws keep every mode in.
 fn joined(
     given: &[Vec<f64>],
     found: Vec<Particle>,
 ) -> (Vec<Vec<f64>>, Vec<f64>) {
-    let most = 1.0 / (found.len() as f64).sqrt();
-    let cut: Vec<f64> =
-        normalised(&found).iter().map(|w| w.min(most)).collect();
-    let total: f64 = cut.iter().sum();
     let mut weights = vec![0.5 / given.len() as f64; given.len()];
-    weights.extend(cut.iter().map(|w| 0.5 * w / total));
+    weights.extend(cut(&found).iter().map(|w| 0.5 * w));
     let mut rows = given.to_vec();
     rows.extend(found.into_iter().map(|p| p.z));
     (rows, weights)
 }
 
-pub(super) fn normalised(particles: &[Particle]) -> Vec<f64> {
+/// Weights that are cut at the square root of their number times the mean
+/// (Ionides 2008), so that no single draw makes a component.
+pub(super) fn cut(found: &[Particle]) -> Vec<f64> {
+    let most = 1.0 / (found.len() as f64).sqrt();
+    let cut: Vec<f64> =
+        normalised(found).iter().map(|w| w.min(most)).collect();
+    let total: f64 = cut.iter().sum();
+    cut.into_iter().map(|w| w / total).collect()
+}
+
+fn normalised(particles: &[Particle]) -> Vec<f64> {
     let logs = particles.iter().map(Particle::log_weight);
     let total = super::log_sum_exp(logs.clone());
     logs.map(|l| (l - total).exp()).collect()

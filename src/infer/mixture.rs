@@ -172,6 +172,16 @@ impl Mixture {
         Self { components }
     }
 
+    /// The components of both, either half of the weight.
+    #[must_use]
+    pub(super) fn beside(mut self, other: &Self) -> Self {
+        self.components.extend(other.components.iter().cloned());
+        for component in &mut self.components {
+            component.log_weight -= std::f64::consts::LN_2;
+        }
+        self
+    }
+
     /// With components where it is far too low for a density whose logs are
     /// known at weighted draws from it: one at the largest ratio of the two,
     /// as wide as the draws around it, and so on until large ratios add little

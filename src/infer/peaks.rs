@@ -7,9 +7,10 @@
 //! coordinates that the data tell little of it is no peak but a [`Ridge`]:
 //! there the climbs keep to given places, and each leaves a component as wide
 //! as its neighbours are far. The normal approximations make a mixture whose
-//! weights are learned from a first round of draws; importance sampling, with
-//! a share of the prior, corrects it; and where its weights stay poor,
-//! tempering from the mixture does the rest.
+//! weights are learned from a first round of draws, and components are added
+//! where later ones miss them; importance sampling, with a share of the prior,
+//! corrects it; and where its weights stay poor, tempering from the mixture
+//! does the rest.
 
 use std::ops::Range;
 
@@ -17,9 +18,9 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::descent::{Peak, climb, climb_holding};
-use super::importance::{ImportanceSampling, normalised};
+use super::importance::{ImportanceSampling, cut};
 use super::mixture::Mixture;
-use super::smc::{Base, Particle, Smc, population};
+use super::smc::{Base, Particle, Smc, effective, population};
 use super::{Backend, Inference, Progress};
 use crate::draws::psis;
 use crate::error::{Error, Result};
@@ -64,10 +65,16 @@ const ONE: f64 = 1.0;
 /// An effective share that is enough with a Pareto tail index below 0.7, and
 /// one that is enough with an index below 1: there few draws carry the tail,
 /// and the evidence is off by less than 0.1.
-const ENOUGH: f64 = 0.05;
-const AMPLE: f64 = 0.15;
-/// Rounds of importance sampling before tempering takes over.
-const ROUNDS: u64 = 4;
+const ENOUGH: f64 = 0.1;
+const AMPLE: f64 = 0.25;
+/// Rounds of importance sampling before tempering takes over: after a few
+/// that teach the weights alone, each adds components where the draws are.
+const ROUNDS: u64 = 6;
+const WEIGHED: u64 = 2;
+/// The most components that a round adds.
+const ADDED: usize = 6;
+/// From how many of the best places on ridges climbs start.
+const BEST: usize = 8;
 /// Steps of a climb along a ridge, which begins nearby.
 const FEW: usize = 8;
 
@@ -131,9 +138,7 @@ impl Backend for Peaks {
         progress: &dyn Progress,
     ) -> Result<Inference> {
         posterior.require_proper("the mixture of peaks")?;
-        let mut parts = self.parts_of_peaks(posterior, seed.child(0))?;
-        parts.extend(self.parts_of_ridges(posterior)?);
-        let mut mixture = mixture(parts)?;
+        let mut mixture = mixture(self.parts(posterior, seed.child(0))?)?;
         progress.begin("importance sampling", None);
         for round in 0..ROUNDS {
             let seed = seed.child(1 + round);
@@ -148,14 +153,9 @@ impl Backend for Peaks {
                     seed.child(1),
                 );
             }
-            let weights = tempered(&found);
-            let places = found.iter().map(|p| p.z.as_slice());
-            mixture = mixture.reweighted(places.zip(weights));
+            mixture = taught(&mixture, found, round, seed.child(2));
         }
-        let base = Base::Mixture(mixture);
-        let particles = self.draws / 4;
-        let smc = Smc { particles, moves: 3.0, ..Smc::default() };
-        smc.passage_of(posterior, base, seed.child(100), progress)
+        self.tempered(posterior, mixture, seed.child(100), progress)
     }
 }
 
@@ -170,27 +170,73 @@ impl Peaks {
         posterior: &Posterior<'_>,
         seed: Seed,
     ) -> Result<f64> {
-        let parts = self.parts_of_peaks(posterior, seed)?;
+        let peaks = self.peaks(posterior, &[], seed)?;
+        let parts: Vec<Part> =
+            peaks.iter().filter_map(Part::of_peak).collect();
         let half = 0.5 * posterior.dimension() as f64;
         let scale = half * std::f64::consts::TAU.ln();
         let logs: Vec<f64> = parts.iter().map(|p| p.log + scale).collect();
         Ok(super::log_sum_exp(logs.iter().copied()))
     }
 
-    /// The peaks that all starts lead to.
-    fn parts_of_peaks(
+    /// Tempering from the mixture, and importance sampling from what that
+    /// found: its evidence is the sharper one where its weights are good.
+    fn tempered(
+        &self,
+        posterior: &Posterior<'_>,
+        mixture: Mixture,
+        seed: Seed,
+        progress: &dyn Progress,
+    ) -> Result<Inference> {
+        // What is drawn from the mixture is in every place already.
+        let (particles, forget) = (self.draws / 4, false);
+        let smc = Smc { particles, moves: 3.0, forget, ..Smc::default() };
+        let base = Base::Mixture(mixture);
+        let led = smc.passage_of(posterior, base, seed.child(0), progress)?;
+        let Some(draws) = &led.draws else { return Ok(led) };
+        let sampling = ImportanceSampling {
+            draws: 2 * self.draws,
+            ..ImportanceSampling::default()
+        };
+        let sampled =
+            sampling.from_draws(posterior, draws, seed.child(1), progress)?;
+        Ok(if sampled.warnings.is_empty() { sampled } else { led })
+    }
+
+    /// The parts of all peaks and ridges.
+    fn parts(
         &self,
         posterior: &Posterior<'_>,
         seed: Seed,
     ) -> Result<Vec<Part>> {
+        let ridges = self.along_ridges(posterior)?;
+        let peaks = self.peaks(posterior, &ridges, seed)?;
+        let of_peaks = peaks.iter().filter_map(Part::of_peak);
+        let of_ridges = ridges.iter().filter_map(|(peak, held, apart)| {
+            Part::of_place(peak, held, apart)
+        });
+        Ok(of_peaks.chain(of_ridges).collect())
+    }
+
+    /// The peaks that all starts lead to, and the best places of ridges.
+    fn peaks(
+        &self,
+        posterior: &Posterior<'_>,
+        ridges: &[(Peak, &Range<usize>, &[f64])],
+        seed: Seed,
+    ) -> Result<Vec<Peak>> {
+        let mut starts = self.from.clone();
         let drawn = (0..self.starts)
             .into_par_iter()
             .map(|i| likely(posterior, seed.child(i as u64)))
             .collect::<Result<Vec<_>>>()?;
-        let mut peaks: Vec<Peak> = self
-            .from
+        starts.extend(drawn);
+        let mut high: Vec<&Peak> = ridges.iter().map(|r| &r.0).collect();
+        high.sort_by(|a, b| b.height.total_cmp(&a.height));
+        let best = high.iter().take(BEST);
+        starts.extend(best.map(|peak| peak.line.as_slice().to_vec()));
+        let mut peaks: Vec<Peak> = starts
             .par_iter()
-            .chain(&drawn)
             .map(|start| climb(posterior, start))
             .collect::<Result<Vec<_>>>()?
             .into_iter()
@@ -203,24 +249,29 @@ impl Peaks {
                 apart.push(peak);
             }
         }
-        Ok(apart.iter().filter_map(Part::of_peak).collect())
+        Ok(apart)
     }
 
-    fn parts_of_ridges(&self, posterior: &Posterior<'_>) -> Result<Vec<Part>> {
-        let mut parts = Vec::new();
-        for Ridge { held, places } in &self.ridges {
-            let found = places
-                .par_iter()
-                .map(|(start, apart)| {
-                    let held = held.clone();
-                    let peak =
-                        climb_holding(posterior, start, held.clone(), FEW)?;
-                    Ok(peak.and_then(|p| Part::of_place(&p, &held, apart)))
-                })
-                .collect::<Result<Vec<_>>>()?;
-            parts.extend(found.into_iter().flatten());
-        }
-        Ok(parts)
+    /// The best that each place of the ridges allows.
+    fn along_ridges(
+        &self,
+        posterior: &Posterior<'_>,
+    ) -> Result<Vec<(Peak, &Range<usize>, &[f64])>> {
+        let places: Vec<_> = self
+            .ridges
+            .iter()
+            .flat_map(|Ridge { held, places }| {
+                places.iter().map(move |(start, apart)| (held, start, apart))
+            })
+            .collect();
+        let found = places
+            .into_par_iter()
+            .map(|(held, start, apart)| {
+                let peak = climb_holding(posterior, start, held.clone(), FEW)?;
+                Ok(peak.map(|peak| (peak, held, &apart[..])))
+            })
+            .collect::<Result<Vec<_>>>()?;
+        Ok(found.into_iter().flatten().collect())
     }
 }
 
@@ -256,21 +307,27 @@ fn mixture(mut parts: Vec<Part>) -> Result<Mixture> {
     })
 }
 
-/// Weights with the largest cut (Ionides 2008), so that no single draw
-/// teaches the mixture.
-fn tempered(found: &[Particle]) -> Vec<f64> {
-    let most = 1.0 / (found.len() as f64).sqrt();
-    let cut: Vec<f64> =
-        normalised(found).iter().map(|w| w.min(most)).collect();
-    let total: f64 = cut.iter().sum();
-    cut.into_iter().map(|w| w / total).collect()
+/// What a round of draws teaches the mixture: how much each component holds,
+/// and later where components are missing.
+fn taught(
+    mixture: &Mixture,
+    found: Vec<Particle>,
+    round: u64,
+    seed: Seed,
+) -> Mixture {
+    let weights = cut(&found);
+    if round < WEIGHED {
+        let places = found.iter().map(|p| p.z.as_slice());
+        return mixture.reweighted(places.zip(weights));
+    }
+    let places: Vec<Vec<f64>> = found.into_iter().map(|p| p.z).collect();
+    let added = Mixture::fit(&places, &weights, ADDED, &mut seed.rng());
+    added.map_or_else(|| mixture.clone(), |added| added.beside(mixture))
 }
 
 fn is_good(found: &[Particle]) -> bool {
     let logs: Vec<f64> = found.iter().map(Particle::log_weight).collect();
-    let once = super::log_sum_exp(logs.iter().copied());
-    let twice = super::log_sum_exp(logs.iter().map(|l| 2.0 * l));
-    let share = (2.0 * once - twice).exp() / logs.len() as f64;
+    let share = effective(&logs, 1.0) / logs.len() as f64;
     let (_, k) = psis(&logs);
     (share > ENOUGH && k < 0.7) || (share > AMPLE && k < 1.0)
 }

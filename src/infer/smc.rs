@@ -37,13 +37,17 @@ pub struct Smc {
     pub keep: f64,
     /// How many accepted moves a particle makes on average after each step.
     pub moves: f64,
+    /// Whether the moves at the posterior go on until the particles forget
+    /// where they were; if not, nothing tells of places that moves miss.
+    pub forget: bool,
     /// Whether a second passage from a fitted mixture follows.
     pub refine: bool,
 }
 
 impl Default for Smc {
     fn default() -> Self {
-        Self { particles: 2000, keep: 0.6, moves: 5.0, refine: true }
+        let (forget, refine) = (true, true);
+        Self { particles: 2000, keep: 0.6, moves: 5.0, forget, refine }
     }
 }
 
@@ -357,10 +361,10 @@ impl<'p, 'm> Passage<'p, 'm> {
             moved += rate;
             self.scale *= (0.6 * (rate - 0.25)).exp();
             let often = sweep >= 2 && moved >= self.smc.moves;
-            if often && self.temperature < 1.0 {
+            if often && (self.temperature < 1.0 || !self.smc.forget) {
                 break;
             }
-            if often || sweep + 1 == MOST_SWEEPS {
+            if self.smc.forget && (often || sweep + 1 == MOST_SWEEPS) {
                 self.memory = memory.left(self.places());
             }
             if often && self.memory.1 < FORGOTTEN {
@@ -479,7 +483,7 @@ impl Mover<'_, '_> {
 }
 
 /// The number of effective particles after a tempering step.
-fn effective(logs: &[f64], step: f64) -> f64 {
+pub(super) fn effective(logs: &[f64], step: f64) -> f64 {
     let once = super::log_sum_exp(logs.iter().map(|l| step * l));
     let twice = super::log_sum_exp(logs.iter().map(|l| 2.0 * step * l));
     (2.0 * once - twice).exp()
@@ -625,7 +629,7 @@ fn conclude(
              particles"
         ));
     }
-    warnings.extend(remembered(&draws, passage.memory));
+    warnings.extend(remembered(&draws, passage));
     Ok(Inference {
         draws: Some(draws),
         evidence: Some(Evidence { log, se, method: method.to_owned() }),
@@ -635,8 +639,8 @@ fn conclude(
 }
 
 /// A warning where particles do not forget where they were.
-fn remembered(draws: &Draws, memory: (usize, f64)) -> Option<String> {
-    let (parameter, much) = memory;
+fn remembered(draws: &Draws, passage: &Passage<'_, '_>) -> Option<String> {
+    let (parameter, much) = passage.memory;
     (much > REMEMBERED).then(|| {
         format!(
             "particles at one end of {} stay there (memory {much:.2} of 1 \

@@ -9,12 +9,12 @@ use crate::error::Result;
 use crate::physics::friction::Laws;
 
 /// What messages and reports call the event's file.
-const PLACE: &str = "coastdown (built in)";
+pub(super) const PLACE: &str = "coastdown (built in)";
 
 /// The event. By the report's drag coefficient the air takes 2.1e-4 u^2
 /// \[m/s2\], so that xi h is g / 2.1e-4 = 4.7e4 m2/s2; the prior of xi has
 /// its median at 2e4 and leaves a factor of seven either way.
-const EVENT: &str = r#"
+pub(super) const EVENT: &str = r#"
 # 69 measured speeds from the course report "MeEn 335 Car Coast Down",
 # repository timothy-commins/system-dynamics-car-coasting-lab. The report
 # gives: slope 1.03 degrees, mass 1910 kg, frontal area 2.15 m2, air density
@@ -145,7 +145,7 @@ pub fn coastdown(laws: &Laws) -> Result<EventFile> {
 }
 
 /// The speeds as a data file has them.
-fn recording() -> String {
+pub(super) fn recording() -> String {
     let mut text = String::from("t,velocity\n");
     for (t, v) in SPEEDS {
         // Writing to a text cannot fail.

@@ -19,7 +19,7 @@ use crate::prior::AnyPrior;
 use crate::scalar::{Plain, Real};
 
 /// The most bytes that an event.toml may have.
-const MOST_BYTES: u64 = 1 << 20;
+pub(super) const MOST_BYTES: u64 = 1 << 20;
 
 /// An event with the model that its file asks for.
 ///
@@ -66,7 +66,7 @@ pub fn load(path: &Path, laws: &Laws) -> Result<EventFile> {
 }
 
 /// The event.toml that a path given by the user means.
-fn find(path: &Path) -> Result<PathBuf> {
+pub(super) fn find(path: &Path) -> Result<PathBuf> {
     let called = place(path);
     if !path.exists() {
         return Err(Error::input(format!(

@@ -4,6 +4,7 @@
 //! with it is said here: each message is one line that names the file, the
 //! line or key, what was found, what was expected, and the mend.
 
+mod corrected;
 mod csv_file;
 mod document;
 mod embedded;
@@ -14,6 +15,7 @@ mod template;
 mod words;
 mod write;
 
+pub use corrected::{Correction, corrected};
 pub use csv_file::{MOST_ROWS, read_recording, read_track};
 pub use embedded::coastdown;
 pub use event_file::{EventFile, load, parse_event};

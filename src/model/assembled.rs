@@ -117,6 +117,21 @@ impl Assembled {
         self
     }
 
+    /// The priors of parameters that the model does not have.
+    pub fn unused<'p>(
+        &self,
+        priors: &'p BTreeMap<String, AnyPrior>,
+    ) -> Vec<&'p str> {
+        let fields = fields(&self.friction, self.noise.as_ref());
+        let known = |key: &str| {
+            self.unknowns.iter().any(|unknown| unknown.name == key)
+                || fields
+                    .iter()
+                    .any(|(_, own, field)| key == own || key == field.name)
+        };
+        priors.keys().map(String::as_str).filter(|key| !known(key)).collect()
+    }
+
     /// Refuses priors of parameters that the model does not have.
     ///
     /// # Errors
@@ -125,14 +140,7 @@ impl Assembled {
         &self,
         priors: &BTreeMap<String, AnyPrior>,
     ) -> Result<()> {
-        let fields = fields(&self.friction, self.noise.as_ref());
-        let known = |key: &str| {
-            self.unknowns.iter().any(|unknown| unknown.name == key)
-                || fields
-                    .iter()
-                    .any(|(_, own, field)| key == own || key == field.name)
-        };
-        match priors.keys().find(|key| !known(key)) {
+        match self.unused(priors).first() {
             None => Ok(()),
             Some(key) => {
                 let names: Vec<_> =
@@ -177,17 +185,24 @@ impl Assembled {
         self.noise.name()
     }
 
-    /// The labels of its mechanisms.
-    pub fn mechanisms(&self) -> Vec<String> {
-        self.mechanisms.iter().map(|(m, _)| m.label()).collect()
+    /// Its mechanisms.
+    pub fn mechanisms(&self) -> impl Iterator<Item = &Arc<dyn Mechanism>> {
+        self.mechanisms.iter().map(|(mechanism, _)| mechanism)
     }
 
-    /// The names of its laws and of its noise, without arguments.
+    /// The labels of its mechanisms.
+    pub fn labels(&self) -> Vec<String> {
+        self.mechanisms().map(|m| m.label()).collect()
+    }
+
+    /// The names of its laws, of its noise and of its mechanisms, without
+    /// arguments.
     pub fn blocks(&self) -> Vec<String> {
         let laws = self.friction.terms().iter().map(|law| law.name());
         let noise = self.noise.name();
         let noise = noise.split('(').next().unwrap_or_default();
-        laws.chain([noise]).map(str::to_owned).collect()
+        let added = self.mechanisms().map(|m| m.name());
+        laws.chain([noise]).chain(added).map(str::to_owned).collect()
     }
 
     /// Whether the parameter of this index says how the mass moves, and not

@@ -13,7 +13,7 @@ use crate::physics::{
     Forces, Friction, Path, Release, Rest, State, Track, rest, rest_changed,
     sample, sample_changed,
 };
-use crate::scalar::Kind;
+use crate::scalar::{Kind, Real};
 
 /// A window \[s\] so short that a mean over it is the value itself.
 const NO_WINDOW: f64 = 1e-6;
@@ -215,8 +215,8 @@ impl Event {
         if let Some(change) = friction.change()
             && change.moves()
         {
-            let law = friction.block();
-            self.slide_changed(law, change, |state| flow.push(state, false))?;
+            let visit = |state| flow.push(state, false);
+            self.slide_changed(friction, change, visit)?;
             return Ok(flow);
         }
         let speed_only = self.velocity.window() == 0.0
@@ -233,35 +233,25 @@ impl Event {
         Ok(flow)
     }
 
-    /// The motion under a change, as the recording's clock shows it.
+    /// The motion under a change, as the recording's clock shows it, with
+    /// the speed as the mean over the change's window.
     fn slide_changed<K: Kind, L: Friction<K>>(
         &self,
-        law: &L,
+        friction: &Declared<'_, K, L>,
         change: &Change<K>,
         mut visit: impl FnMut(State<K>),
     ) -> Result<(), Stop> {
-        let release = self.release_changed(change);
-        let path = self.path();
-        let moments = || self.samples.iter().map(|&t| t - change.clock);
-        let forces = &*self.forces(change);
+        let law = friction.block();
         if change.window <= NO_WINDOW {
-            return sample_changed(
-                &path,
-                law,
-                forces,
-                release,
-                moments(),
-                visit,
-            );
+            return self.motion(law, change, &self.samples, visit);
         }
+        let moments = || self.samples.iter().map(|&t| t - change.clock);
         let since = moments().map(|t| (t - change.window).max(0.0));
-        let mut begins = Vec::with_capacity(self.samples.len());
-        sample_changed(&path, law, forces, release, since, |state| {
-            begins.push(state.distance);
-        })?;
-        let mut windows = moments().zip(begins);
-        sample_changed(&path, law, forces, release, moments(), |state| {
-            let Some((time, begin)) = windows.next() else { return };
+        let mut begins = friction.context().buffer();
+        self.changed(law, change, since, |s| begins.push(s.distance))?;
+        let mut windows = moments().zip(begins.iter());
+        self.changed(law, change, moments(), |state| {
+            let Some((time, &begin)) = windows.next() else { return };
             let cut = change.window_begins && time < change.window;
             let lasts = if cut { time } else { change.window };
             let speed = if lasts > NO_WINDOW {
@@ -282,14 +272,25 @@ impl Event {
         times: &[f64],
         visit: impl FnMut(State<K>),
     ) -> Result<(), Stop> {
-        let path = self.path();
         if !change.moves() {
-            return sample(&path, law, self.release(), times, false, visit);
+            let (path, release) = (self.path(), self.release());
+            return sample(&path, law, release, times, false, visit);
         }
         let moments = times.iter().map(|&t| t - change.clock);
+        self.changed(law, change, moments, visit)
+    }
+
+    /// The motion under a change at increasing times since the release.
+    fn changed<K: Kind, L: Friction<K>>(
+        &self,
+        law: &L,
+        change: &Change<K>,
+        times: impl Iterator<Item = Real<K>>,
+        visit: impl FnMut(State<K>),
+    ) -> Result<(), Stop> {
         let release = self.release_changed(change);
         let forces = self.forces(change);
-        sample_changed(&path, law, &forces, release, moments, visit)
+        sample_changed(&self.path(), law, &forces, release, times, visit)
     }
 
     /// The forces of a change. Where none is added, nothing says how often a

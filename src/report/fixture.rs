@@ -218,3 +218,16 @@ fn bell(mean: f64, sd: f64) -> Vec<(f64, f64)> {
     let z = (0..=160).map(|i| (f64::from(i) - 80.0) / 22.0);
     z.map(|z| (mean + sd * z, (-0.5 * z * z).exp() / sd)).collect()
 }
+
+/// No identifier of a page stands twice.
+pub(crate) fn assert_unique_ids(html: &str) {
+    let mut ids: Vec<&str> = html
+        .split(" id=\"")
+        .skip(1)
+        .filter_map(|rest| rest.split('"').next())
+        .collect();
+    let count = ids.len();
+    ids.sort_unstable();
+    ids.dedup();
+    assert_eq!(ids.len(), count);
+}

@@ -8,7 +8,7 @@
 
 pub(crate) mod digits;
 #[cfg(test)]
-mod fixture;
+pub(crate) mod fixture;
 mod json;
 mod page;
 pub mod svg;

@@ -243,14 +243,6 @@ mod tests {
     #[test]
     fn identifiers_are_unique() {
         let html = page(&fixture::calibration());
-        let mut ids: Vec<&str> = html
-            .split(" id=\"")
-            .skip(1)
-            .filter_map(|rest| rest.split('"').next())
-            .collect();
-        let count = ids.len();
-        ids.sort_unstable();
-        ids.dedup();
-        assert_eq!(ids.len(), count);
+        fixture::assert_unique_ids(&html);
     }
 }

@@ -8,6 +8,11 @@ pub(crate) fn plain(text: &str) -> String {
     text.chars().map(|c| if forbidden(c) { '\u{fffd}' } else { c }).collect()
 }
 
+/// Whether the recordings of events were computed: a name says so.
+pub(crate) fn is_synthetic(name: &str) -> bool {
+    name.to_lowercase().contains("synthetic")
+}
+
 /// A unit to print: empty for a number without one, exponents raised.
 pub(crate) fn unit(unit: &str) -> String {
     if unit == "1" {

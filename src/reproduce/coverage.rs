@@ -105,21 +105,25 @@ fn evidence(found: &Inference) -> f64 {
     found.evidence.as_ref().map_or(f64::NAN, |e| e.log)
 }
 
-fn fit(
+/// What is asked of the posterior of one of the study's models.
+fn asked<T>(
     event: Event,
     which: Which,
     priors: &Priors,
-    seed: Seed,
-) -> Result<Fit> {
+    ask: impl FnOnce(&Posterior<'_>) -> Result<T>,
+) -> Result<T> {
     let model = model(event, which, priors)?;
-    let posterior = Posterior::new(&model)?;
-    let (draws, exact) = explored(&posterior, &PAPERS, seed.child(0))?;
+    ask(&Posterior::new(&model)?)
+}
+
+fn fit(posterior: &Posterior<'_>, seed: Seed) -> Result<Fit> {
+    let (draws, exact) = explored(posterior, &PAPERS, seed.child(0))?;
     let summaries = summarise(&draws);
     let median = summaries.iter().map(|s| s.q50).collect();
     let search = Map { starts: 1, from: vec![median] };
-    let mode = infer(&search, &posterior, seed.child(1), &Quiet)?.mode;
+    let mode = infer(&search, posterior, seed.child(1), &Quiet)?.mode;
     let bridge = Bridge { draws: 4000, ..Bridge::default() };
-    let (sampled, _) = bridge.from_draws(&posterior, &draws, seed.child(2))?;
+    let (sampled, _) = bridge.from_draws(posterior, &draws, seed.child(2))?;
     Ok(Fit {
         names: draws.names().to_vec(),
         intervals: summaries.iter().map(|s| (s.q05, s.q95)).collect(),
@@ -156,7 +160,7 @@ pub(super) fn study(
             .map(|(i, series)| {
                 let event = plan.with_recording(series.clone())?;
                 let seed = seed.child(which as u64).child(i as u64);
-                let fit = fit(event, which, &priors, seed);
+                let fit = asked(event, which, &priors, |p| fit(p, seed));
                 progress.advance(1);
                 fit
             })
@@ -234,7 +238,10 @@ pub(super) fn reading(
             let seed = seed.child(i);
             let event = plan.with_recording(draw(seed.child(0))?)?;
             let fits = Which::BOTH.map(|which| {
-                exactly(event.clone(), which, priors, seed.child(1))
+                asked(event.clone(), which, priors, |posterior| {
+                    let seed = seed.child(1);
+                    Ok(explored(posterior, &SCOUTING, seed)?.1)
+                })
             });
             progress.advance(1);
             let [m0, m1] = fits;
@@ -261,15 +268,4 @@ pub(super) fn reading(
         .map(|[m0, m1]| (evidence(m1) - evidence(m0)) / f64::ln(10.0))
         .collect();
     Ok(Reading { what, samples, covered, width_mu, log10_bf })
-}
-
-fn exactly(
-    event: Event,
-    which: Which,
-    priors: &Priors,
-    seed: Seed,
-) -> Result<Inference> {
-    let model = model(event, which, priors)?;
-    let posterior = Posterior::new(&model)?;
-    explored(&posterior, &SCOUTING, seed).map(|(_, exact)| exact)
 }

@@ -6,7 +6,7 @@ use crate::seed::Rng;
 /// Sized by phi, the part taken over from value to value.
 pub(super) const KIND: Kind = Kind {
     name: "ar1",
-    class: Class::Noise,
+    class: Class::Errors,
     range: (0.5, 0.9),
     signed: false,
     unit: "1",

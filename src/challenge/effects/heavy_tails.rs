@@ -10,7 +10,7 @@ use crate::seed::Rng;
 /// Sized by 1/nu: from 4 to 2 degrees of freedom.
 pub(super) const KIND: Kind = Kind {
     name: "heavy-tails",
-    class: Class::Noise,
+    class: Class::Errors,
     range: (0.25, 0.5),
     signed: false,
     unit: "1",

@@ -89,7 +89,7 @@ pub enum Class {
     /// The values, their times or the track are off.
     Measurement,
     /// The values scatter otherwise than by independent normal errors.
-    Noise,
+    Errors,
     /// A force that is not in the catalogue.
     Outside,
 }

@@ -10,7 +10,7 @@ use crate::seed::Rng;
 /// deviation: from 3 to 6 times.
 pub(super) const KIND: Kind = Kind {
     name: "unequal-variance",
-    class: Class::Noise,
+    class: Class::Errors,
     range: (1.1, 1.8),
     signed: false,
     unit: "1",

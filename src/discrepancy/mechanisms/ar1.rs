@@ -1,17 +1,13 @@
 //! Errors that are correlated in time.
 
 use super::unknown;
-use crate::change::{Candidate, Change, Family, Missing, Unknown};
-use crate::observe::Extent;
+use crate::change::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
 
 /// Errors that are correlated in time.
 #[derive(Debug, Clone, Copy)]
-pub struct Ar1 {
-    /// What its prior is scaled to.
-    pub extent: Extent,
-}
+pub struct Ar1;
 
 impl Candidate for Ar1 {
     fn name(&self) -> &'static str {
@@ -19,7 +15,11 @@ impl Candidate for Ar1 {
     }
 
     fn family(&self) -> Family {
-        Family::Noise
+        Family::Errors
+    }
+
+    fn noun(&self, _amplitude: f64) -> Noun {
+        Noun::many("errors correlated in time")
     }
 
     fn says(&self) -> &'static str {

@@ -1,16 +1,13 @@
 //! Values that are means over a window of time.
 
 use super::{unknown, variant};
-use crate::change::{Candidate, Change, Family, Missing, Unknown};
-use crate::observe::Extent;
+use crate::change::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
 
 /// Values that are means over a window of time.
 #[derive(Debug, Clone, Copy)]
 pub struct AveragingWindow {
-    /// What its prior is scaled to.
-    pub extent: Extent,
     /// Whether a window that reaches before the release begins there; else
     /// the mass counts as at rest before it.
     pub begins: bool,
@@ -27,6 +24,10 @@ impl Candidate for AveragingWindow {
 
     fn family(&self) -> Family {
         Family::Measurement
+    }
+
+    fn noun(&self, _amplitude: f64) -> Noun {
+        Noun::many("values that are means over a while")
     }
 
     fn says(&self) -> &'static str {

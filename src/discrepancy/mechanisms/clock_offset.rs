@@ -1,17 +1,13 @@
 //! A recording whose clock is ahead or behind.
 
 use super::unknown;
-use crate::change::{Candidate, Change, Family, Missing, Unknown};
-use crate::observe::Extent;
+use crate::change::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
 
 /// A recording whose clock is ahead or behind.
 #[derive(Debug, Clone, Copy)]
-pub struct ClockOffset {
-    /// What its prior is scaled to.
-    pub extent: Extent,
-}
+pub struct ClockOffset;
 
 impl Candidate for ClockOffset {
     fn name(&self) -> &'static str {
@@ -20,6 +16,10 @@ impl Candidate for ClockOffset {
 
     fn family(&self) -> Family {
         Family::Measurement
+    }
+
+    fn noun(&self, _amplitude: f64) -> Noun {
+        Noun::one("a clock that is off")
     }
 
     fn says(&self) -> &'static str {

@@ -1,7 +1,7 @@
 //! A constant force that holds the mass back.
 
 use super::{FORCE, Rate, everywhere, unknown};
-use crate::change::{Candidate, Change, Family, Missing, Unknown};
+use crate::change::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::observe::Extent;
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
@@ -20,6 +20,10 @@ impl Candidate for Cohesion {
 
     fn family(&self) -> Family {
         Family::Physics
+    }
+
+    fn noun(&self, _amplitude: f64) -> Noun {
+        Noun::one("a constant resistance")
     }
 
     fn says(&self) -> &'static str {

@@ -1,7 +1,7 @@
 //! Bends of the ground that press on the mass or relieve it.
 
 use super::{Rate, everywhere, unknown};
-use crate::change::{Candidate, Change, Family, Missing, Unknown};
+use crate::change::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::observe::Extent;
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
@@ -20,6 +20,10 @@ impl Candidate for Curvature {
 
     fn family(&self) -> Family {
         Family::Physics
+    }
+
+    fn noun(&self, _amplitude: f64) -> Noun {
+        Noun::one("the load of the bends on the friction")
     }
 
     fn says(&self) -> &'static str {

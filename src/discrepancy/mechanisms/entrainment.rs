@@ -1,7 +1,9 @@
 //! Snow that the mass takes up along a stretch and sets in motion.
 
 use super::{FORCE, Rate, along_place, between, unknown};
-use crate::change::{Candidate, Change, Family, Missing, Reach, Unknown};
+use crate::change::{
+    Candidate, Change, Family, Missing, Noun, Reach, Unknown,
+};
 use crate::observe::Extent;
 use crate::physics::forces::Axis;
 use crate::prior::AnyPrior;
@@ -21,6 +23,10 @@ impl Candidate for Entrainment {
 
     fn family(&self) -> Family {
         Family::Physics
+    }
+
+    fn noun(&self, _amplitude: f64) -> Noun {
+        Noun::one("entrainment of snow along a stretch")
     }
 
     fn says(&self) -> &'static str {

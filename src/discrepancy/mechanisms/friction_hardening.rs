@@ -1,7 +1,7 @@
 //! Dry friction that changes steadily with distance or time.
 
-use super::{FRICTION, Rate, Shape, everywhere, unknown, variant};
-use crate::change::{Candidate, Change, Family, Missing, Unknown};
+use super::{FRICTION, Rate, Shape, everywhere, or, unknown, variant};
+use crate::change::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::observe::Extent;
 use crate::physics::forces::{Axis, Range};
 use crate::prior::AnyPrior;
@@ -39,6 +39,15 @@ impl Candidate for FrictionHardening {
 
     fn family(&self) -> Family {
         Family::Physics
+    }
+
+    fn noun(&self, amplitude: f64) -> Noun {
+        let how = or(amplitude, ["rises", "falls", "changes"]);
+        let along = match self.axis {
+            Axis::Time => "time",
+            _ => "distance",
+        };
+        Noun::one(format!("friction that {how} steadily with {along}"))
     }
 
     fn says(&self) -> &'static str {

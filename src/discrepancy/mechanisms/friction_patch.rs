@@ -1,7 +1,9 @@
 //! Dry friction that differs between two places.
 
-use super::{FRICTION, Rate, along_place, between, unknown};
-use crate::change::{Candidate, Change, Family, Missing, Reach, Unknown};
+use super::{FRICTION, Rate, along_place, between, or, unknown};
+use crate::change::{
+    Candidate, Change, Family, Missing, Noun, Reach, Unknown,
+};
 use crate::observe::Extent;
 use crate::physics::forces::Axis;
 use crate::prior::AnyPrior;
@@ -21,6 +23,11 @@ impl Candidate for FrictionPatch {
 
     fn family(&self) -> Family {
         Family::Physics
+    }
+
+    fn noun(&self, amplitude: f64) -> Noun {
+        let how = or(amplitude, ["higher", "lower", "other"]);
+        Noun::one(format!("a patch of {how} friction"))
     }
 
     fn says(&self) -> &'static str {

@@ -1,7 +1,9 @@
 //! Dry friction that differs beyond a place or after a time.
 
-use super::{FRICTION, Rate, between, unknown, variant};
-use crate::change::{Candidate, Change, Family, Missing, Reach, Unknown};
+use super::{FRICTION, Rate, between, or, unknown, variant};
+use crate::change::{
+    Candidate, Change, Family, Missing, Noun, Reach, Unknown,
+};
 use crate::observe::Extent;
 use crate::physics::forces::Axis;
 use crate::prior::AnyPrior;
@@ -27,6 +29,15 @@ impl Candidate for FrictionStep {
 
     fn family(&self) -> Family {
         Family::Physics
+    }
+
+    fn noun(&self, amplitude: f64) -> Noun {
+        let how = or(amplitude, ["higher", "lower", "different"]);
+        let step = match self.axis {
+            Axis::Time => "from a moment on",
+            _ => "beyond a place",
+        };
+        Noun::one(format!("friction that is {how} {step}"))
     }
 
     fn says(&self) -> &'static str {

@@ -1,17 +1,13 @@
 //! Errors among which large ones are common.
 
 use super::unknown;
-use crate::change::{Candidate, Change, Family, Missing, Unknown};
-use crate::observe::Extent;
+use crate::change::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
 
 /// Errors among which large ones are common.
 #[derive(Debug, Clone, Copy)]
-pub struct HeavyTails {
-    /// What its prior is scaled to.
-    pub extent: Extent,
-}
+pub struct HeavyTails;
 
 impl Candidate for HeavyTails {
     fn name(&self) -> &'static str {
@@ -19,7 +15,11 @@ impl Candidate for HeavyTails {
     }
 
     fn family(&self) -> Family {
-        Family::Noise
+        Family::Errors
+    }
+
+    fn noun(&self, _amplitude: f64) -> Noun {
+        Noun::many("outliers among the errors")
     }
 
     fn says(&self) -> &'static str {

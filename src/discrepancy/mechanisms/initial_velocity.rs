@@ -1,7 +1,7 @@
 //! A mass that is already moving at t = 0.
 
 use super::{SPEED, unknown};
-use crate::change::{Candidate, Change, Family, Missing, Unknown};
+use crate::change::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::observe::Extent;
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
@@ -20,6 +20,10 @@ impl Candidate for InitialVelocity {
 
     fn family(&self) -> Family {
         Family::Start
+    }
+
+    fn noun(&self, _amplitude: f64) -> Noun {
+        Noun::one("a start that was already moving")
     }
 
     fn says(&self) -> &'static str {

@@ -63,8 +63,9 @@ const ANGLE: f64 = 3.0;
 /// The prior sd of what a sensor has drifted by the end \[recorded unit\].
 const DRIFT: f64 = 2.0;
 
-/// Every mechanism that applies to an event of this extent under laws and
-/// noises of these names, variants one after the other.
+/// Every mechanism that applies to an event of this extent and that a model
+/// with laws, noises and mechanisms of these names has not, variants one after
+/// the other.
 pub fn catalogue(
     extent: &Extent,
     blocks: &[String],
@@ -79,11 +80,11 @@ pub fn catalogue(
         Box::new(Entrainment { extent }),
         Box::new(InitialVelocity { extent }),
         Box::new(ReleasePosition { extent }),
-        Box::new(ClockOffset { extent }),
-        Box::new(VelocityScale { extent }),
+        Box::new(ClockOffset),
+        Box::new(VelocityScale),
         Box::new(SensorDrift { extent }),
-        Box::new(Ar1 { extent }),
-        Box::new(HeavyTails { extent }),
+        Box::new(Ar1),
+        Box::new(HeavyTails),
         Box::new(UnequalVariance { extent, axis: time }),
         Box::new(UnequalVariance { extent, axis: speed }),
     ];
@@ -100,17 +101,17 @@ pub fn catalogue(
                 }));
             }
         }
-        all.push(Box::new(SlopeBias { extent }));
+        all.push(Box::new(SlopeBias));
     }
     if extent.bends {
         all.push(Box::new(Curvature { extent }));
     }
     if extent.averages {
         for begins in [true, false] {
-            all.push(Box::new(AveragingWindow { extent, begins }));
+            all.push(Box::new(AveragingWindow { begins }));
         }
     }
-    all.retain(|m| !m.contained_in().iter().any(|name| held(blocks, name)));
+    all.retain(|m| !is_held(m.as_ref(), blocks));
     all
 }
 
@@ -141,7 +142,7 @@ pub fn find(
     let known = elsewhere.into_iter().find(|m| is_it(m.as_ref()));
     let why = match known {
         None => "is no mechanism",
-        Some(m) if m.contained_in().iter().any(|n| held(blocks, n)) => {
+        Some(m) if is_held(m.as_ref(), blocks) => {
             "is a term that the model's laws or noise already have"
         }
         Some(_) => "has nothing to act on in this event",
@@ -156,8 +157,13 @@ fn without_spaces(text: &str) -> String {
     text.chars().filter(|c| !c.is_whitespace()).collect()
 }
 
-fn held(blocks: &[String], name: &str) -> bool {
-    blocks.iter().any(|block| block == name)
+/// Whether a model with blocks of these names has the mechanism already, in
+/// this variant or another.
+pub(super) fn is_held(mechanism: &dyn Candidate, blocks: &[String]) -> bool {
+    let also = mechanism.contained_in();
+    blocks
+        .iter()
+        .any(|own| own == mechanism.name() || also.contains(&own.as_str()))
 }
 
 /// A name with what tells the variant from the others that share it.
@@ -165,6 +171,15 @@ fn variant(mechanism: &impl Candidate) -> String {
     let along = mechanism.coordinate().map(Axis::name);
     let parts: Vec<&str> = along.into_iter().chain(mechanism.form()).collect();
     format!("{}({})", mechanism.name(), parts.join(", "))
+}
+
+/// The words for an amplitude above zero, below it, or unknown.
+fn or(amplitude: f64, words: [&'static str; 3]) -> &'static str {
+    match amplitude {
+        x if x > 0.0 => words[0],
+        x if x < 0.0 => words[1],
+        _ => words[2],
+    }
 }
 
 fn unknown(name: &str, unit: &'static str, prior: AnyPrior) -> Unknown {

@@ -1,7 +1,7 @@
 //! A release at another place than the event says.
 
 use super::{DISTANCE, unknown};
-use crate::change::{Candidate, Change, Family, Missing, Unknown};
+use crate::change::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::observe::Extent;
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
@@ -20,6 +20,10 @@ impl Candidate for ReleasePosition {
 
     fn family(&self) -> Family {
         Family::Start
+    }
+
+    fn noun(&self, _amplitude: f64) -> Noun {
+        Noun::one("a release at another place")
     }
 
     fn says(&self) -> &'static str {

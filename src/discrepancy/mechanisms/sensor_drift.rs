@@ -1,7 +1,7 @@
 //! A sensor that drifts with time.
 
 use super::{DRIFT, unknown};
-use crate::change::{Candidate, Change, Family, Missing, Unknown};
+use crate::change::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::observe::Extent;
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
@@ -20,6 +20,10 @@ impl Candidate for SensorDrift {
 
     fn family(&self) -> Family {
         Family::Measurement
+    }
+
+    fn noun(&self, _amplitude: f64) -> Noun {
+        Noun::one("a sensor that drifts")
     }
 
     fn says(&self) -> &'static str {

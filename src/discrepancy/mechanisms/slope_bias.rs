@@ -1,17 +1,13 @@
 //! A track whose angle is off.
 
 use super::{ANGLE, unknown};
-use crate::change::{Candidate, Change, Family, Missing, Unknown};
-use crate::observe::Extent;
+use crate::change::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
 
 /// A track whose angle is off.
 #[derive(Debug, Clone, Copy)]
-pub struct SlopeBias {
-    /// What its prior is scaled to.
-    pub extent: Extent,
-}
+pub struct SlopeBias;
 
 impl Candidate for SlopeBias {
     fn name(&self) -> &'static str {
@@ -20,6 +16,10 @@ impl Candidate for SlopeBias {
 
     fn family(&self) -> Family {
         Family::Measurement
+    }
+
+    fn noun(&self, _amplitude: f64) -> Noun {
+        Noun::one("a track whose slope is off")
     }
 
     fn says(&self) -> &'static str {

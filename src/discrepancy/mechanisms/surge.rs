@@ -1,7 +1,9 @@
 //! A force during a window of time.
 
-use super::{FORCE, Rate, between, unknown};
-use crate::change::{Candidate, Change, Family, Missing, Reach, Unknown};
+use super::{FORCE, Rate, between, or, unknown};
+use crate::change::{
+    Candidate, Change, Family, Missing, Noun, Reach, Unknown,
+};
 use crate::observe::Extent;
 use crate::physics::forces::Axis;
 use crate::prior::AnyPrior;
@@ -21,6 +23,11 @@ impl Candidate for Surge {
 
     fn family(&self) -> Family {
         Family::Physics
+    }
+
+    fn noun(&self, amplitude: f64) -> Noun {
+        let what = or(amplitude, ["a push", "a brake", "a force"]);
+        Noun::one(format!("{what} that lasts a while"))
     }
 
     fn says(&self) -> &'static str {

@@ -1,7 +1,7 @@
 //! A drag in u^2 that the model lacks.
 
 use super::{FORCE, Rate, everywhere, unknown};
-use crate::change::{Candidate, Change, Family, Missing, Unknown};
+use crate::change::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::observe::Extent;
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
@@ -20,6 +20,10 @@ impl Candidate for TurbulentDrag {
 
     fn family(&self) -> Family {
         Family::Physics
+    }
+
+    fn noun(&self, _amplitude: f64) -> Noun {
+        Noun::one("drag that grows with the square of the speed")
     }
 
     fn says(&self) -> &'static str {

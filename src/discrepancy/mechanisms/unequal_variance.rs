@@ -1,7 +1,9 @@
 //! Errors that are larger in one part of the recording than in another.
 
 use super::{unknown, variant};
-use crate::change::{Candidate, Change, Covariate, Family, Missing, Unknown};
+use crate::change::{
+    Candidate, Change, Covariate, Family, Missing, Noun, Unknown,
+};
 use crate::observe::Extent;
 use crate::physics::forces::Axis;
 use crate::prior::AnyPrior;
@@ -26,7 +28,11 @@ impl Candidate for UnequalVariance {
     }
 
     fn family(&self) -> Family {
-        Family::Noise
+        Family::Errors
+    }
+
+    fn noun(&self, _amplitude: f64) -> Noun {
+        Noun::many("errors of unequal size")
     }
 
     fn says(&self) -> &'static str {

@@ -1,17 +1,13 @@
 //! A sensor whose scale is off.
 
 use super::unknown;
-use crate::change::{Candidate, Change, Family, Missing, Unknown};
-use crate::observe::Extent;
+use crate::change::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
 
 /// A sensor whose scale is off.
 #[derive(Debug, Clone, Copy)]
-pub struct VelocityScale {
-    /// What its prior is scaled to.
-    pub extent: Extent,
-}
+pub struct VelocityScale;
 
 impl Candidate for VelocityScale {
     fn name(&self) -> &'static str {
@@ -20,6 +16,10 @@ impl Candidate for VelocityScale {
 
     fn family(&self) -> Family {
         Family::Measurement
+    }
+
+    fn noun(&self, _amplitude: f64) -> Noun {
+        Noun::one("a reading off by a constant factor")
     }
 
     fn says(&self) -> &'static str {

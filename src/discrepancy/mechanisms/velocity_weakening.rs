@@ -1,7 +1,7 @@
 //! Dry friction that falls with the speed.
 
 use super::{FRICTION, Rate, Shape, everywhere, unknown};
-use crate::change::{Candidate, Change, Family, Missing, Unknown};
+use crate::change::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::observe::Extent;
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
@@ -20,6 +20,10 @@ impl Candidate for VelocityWeakening {
 
     fn family(&self) -> Family {
         Family::Physics
+    }
+
+    fn noun(&self, _amplitude: f64) -> Noun {
+        Noun::one("dry friction that falls with speed")
     }
 
     fn says(&self) -> &'static str {

@@ -72,7 +72,7 @@ fn row(canvas: &mut Canvas, axes: &Axes, d: &Diagnosis, m: &Judged, top: f64) {
     canvas.rectangle(bar, colour(m.kind), 1.0);
     let text = probability(m.probability);
     canvas.text((COLUMNS.0, base), Anchor::End, INK, &text);
-    let text = match m.name.as_str() {
+    let text = match m.kind {
         "none" => "0".to_owned(),
         _ => log10(m.log10_bayes_factor).replace('-', "−"),
     };

@@ -1,0 +1,334 @@
+//! What is added to the model: one mechanism, a pair, or three.
+
+use std::f64::consts::LN_10;
+
+use rayon::prelude::*;
+
+use super::attribute::{Attribution, Known, extend, pair};
+use super::before_and_after::rows_of;
+use super::diagnosis::{Judged, Rival, Verdict};
+use super::fit::Fit;
+use crate::change::{Family, Mechanism, Reach};
+use crate::draws::median;
+use crate::error::Result;
+use crate::model::Program;
+use crate::seed::Seed;
+
+/// In log10: by how much a pair must beat the best single mechanism, and a
+/// third one the pair.
+const RISE: f64 = 1.0;
+/// Of how many mechanisms all pairs are weighed.
+const BEST: usize = 5;
+
+/// What was chosen to be added to the model.
+pub(super) struct Chosen {
+    /// Which of the catalogue.
+    which: Vec<usize>,
+    pub(super) fit: Fit,
+    /// What would do nearly as well in its place, with ln of its evidence.
+    rivals: Vec<(Vec<usize>, f64)>,
+}
+
+/// The best pair with the best single mechanism in it, and the best without.
+struct Pairs {
+    nested: Option<Chosen>,
+    other: Option<Chosen>,
+}
+
+/// What there is to choose from.
+pub(super) struct Choice<'a, P> {
+    pub(super) program: &'a P,
+    pub(super) all: &'a [Box<dyn Mechanism>],
+    /// The fit of each of them.
+    pub(super) found: &'a Attribution,
+    /// Their names, most probable first.
+    pub(super) judged: &'a [Judged],
+    pub(super) seed: Seed,
+}
+
+impl<P: Program> Choice<'_, P> {
+    /// The model to go on with: the best mechanism where there is one, or a
+    /// pair or three where the evidence rises.
+    pub(super) fn choose(&self, verdict: Verdict) -> Result<Option<Chosen>> {
+        if verdict == Verdict::Adequate {
+            return Ok(None);
+        }
+        let best = self.best_variants();
+        let Some(&first) = best.first() else { return Ok(None) };
+        let fit = self.found.candidates[first].clone();
+        let single = Chosen::new(vec![first], fit);
+        let pairs = self.best_pair(&best, &single.fit)?;
+        let two = match pairs.nested {
+            Some(two) if rises(&two.fit, &single.fit) => two,
+            _ => return Ok(Some(single.rivalled(pairs.other, self.all))),
+        };
+        let two = two.rivalled(pairs.other, self.all);
+        let found = match self.best_third(&best, &two)? {
+            Some(three) if rises(&three.fit, &two.fit) => three,
+            _ => two,
+        };
+        self.exchanged(found).map(Some)
+    }
+
+    /// The same with a term of the physics exchanged where another has more
+    /// evidence in its place; those that have nearly as much are its rivals.
+    fn exchanged(&self, chosen: Chosen) -> Result<Chosen> {
+        let physics = self.physics();
+        let swaps: Vec<(usize, usize)> = (1..chosen.which.len())
+            .filter(|&k| physics.contains(&chosen.which[k]))
+            .flat_map(|k| physics.iter().map(move |&i| (k, i)))
+            .filter(|(_, i)| !chosen.which.contains(i))
+            .collect();
+        let fits = swaps
+            .into_par_iter()
+            .map(|(k, i)| self.exchange(&chosen, k, i))
+            .collect::<Result<Vec<_>>>()?;
+        let mut all: Vec<Chosen> = fits.into_iter().flatten().collect();
+        all.push(chosen);
+        all.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
+        let mut best = all.remove(0);
+        all.retain(|other| !rises(&best.fit, &other.fit));
+        let rivals = all.into_iter().map(|c| (c.which, c.fit.log_evidence));
+        best.rivals = rivals.collect();
+        Ok(best)
+    }
+
+    /// The chosen with another mechanism in the place of its k-th.
+    fn exchange(
+        &self,
+        chosen: &Chosen,
+        k: usize,
+        other: usize,
+    ) -> Result<Option<Chosen>> {
+        let mechanisms = chosen.mechanisms(self.all);
+        let counts = mechanisms.iter().map(|m| m.unknowns().len());
+        let counts: Vec<usize> = counts.collect();
+        let begin: usize = counts[..k].iter().sum();
+        let mut rest = chosen.fit.clone();
+        rest.best.drain(begin..begin + counts[k]);
+        rest.added -= counts[k];
+        let (mut kept, mut which) = (mechanisms, chosen.which.clone());
+        kept.remove(k);
+        which.remove(k);
+        which.push(other);
+        let known = Known { mechanisms: &kept, fit: &rest };
+        let added = (self.all[other].as_ref(), &self.found.candidates[other]);
+        let hurdle = chosen.fit.log_evidence - RISE * LN_10;
+        let seed = self.seed.child(7000 + (k * self.all.len() + other) as u64);
+        let fit = extend(self.program, &known, added, hurdle, seed)?;
+        Ok(fit.map(|fit| Chosen::new(which, fit)))
+    }
+
+    /// The best variants of the physics with the most evidence.
+    fn physics(&self) -> Vec<usize> {
+        let is_physics = |m: &&Judged| m.kind == Family::Physics.name();
+        self.best_of(self.judged.iter().filter(is_physics))
+    }
+
+    /// The best variant of each of the best names, most probable first.
+    fn best_variants(&self) -> Vec<usize> {
+        self.best_of(self.judged.iter())
+    }
+
+    fn best_of<'j>(
+        &self,
+        judged: impl Iterator<Item = &'j Judged>,
+    ) -> Vec<usize> {
+        let all = self.all;
+        let evidence = |i: &usize| self.found.candidates[*i].log_evidence;
+        judged
+            .filter(|m| all.iter().any(|one| one.name() == m.name))
+            .take(BEST)
+            .filter_map(|m| {
+                (0..all.len())
+                    .filter(|&i| all[i].name() == m.name)
+                    .max_by(|a, b| evidence(a).total_cmp(&evidence(b)))
+            })
+            .collect()
+    }
+
+    fn best_pair(&self, best: &[usize], single: &Fit) -> Result<Pairs> {
+        let all = self.all;
+        let pairs: Vec<(usize, usize)> = (0..best.len())
+            .flat_map(|i| (i + 1..best.len()).map(move |j| (best[i], best[j])))
+            .collect();
+        let hurdle = single.log_evidence + RISE * LN_10;
+        let fits = pairs
+            .into_par_iter()
+            .map(|(a, b)| {
+                let seed = self.seed.child(1000 + (a * all.len() + b) as u64);
+                let mechanisms = [all[a].as_ref(), all[b].as_ref()];
+                let fits = [a, b].map(|i| &self.found.candidates[i]);
+                let fit = pair(self.program, mechanisms, fits, hurdle, seed)?;
+                Ok(fit.map(|fit| Chosen::new(vec![a, b], fit)))
+            })
+            .collect::<Result<Vec<_>>>()?;
+        // A second term is added to the best one: a pair of two others that
+        // reaches as far says less plainly what is missing.
+        let (nested, others): (Vec<_>, Vec<_>) =
+            fits.into_iter().partition(|c| {
+                c.as_ref().is_some_and(|c| c.which.contains(&best[0]))
+            });
+        let (nested, other) = (most_evidence(nested), most_evidence(others));
+        Ok(Pairs { nested, other })
+    }
+
+    fn best_third(
+        &self,
+        best: &[usize],
+        two: &Chosen,
+    ) -> Result<Option<Chosen>> {
+        let known = two.mechanisms(self.all);
+        let hurdle = two.fit.log_evidence + RISE * LN_10;
+        let fits = best
+            .par_iter()
+            .filter(|i| !two.which.contains(i))
+            .map(|&i| {
+                let seed = self.seed.child(5000 + i as u64);
+                let known = Known { mechanisms: &known, fit: &two.fit };
+                let added = (self.all[i].as_ref(), &self.found.candidates[i]);
+                let fit = extend(self.program, &known, added, hurdle, seed)?;
+                let which = [two.which.clone(), vec![i]].concat();
+                Ok(fit.map(|fit| Chosen::new(which, fit)))
+            })
+            .collect::<Result<Vec<_>>>()?;
+        Ok(most_evidence(fits))
+    }
+}
+
+impl Chosen {
+    fn new(which: Vec<usize>, fit: Fit) -> Self {
+        Self { which, fit, rivals: Vec::new() }
+    }
+
+    /// What would do nearly as well, most evidence first.
+    pub(super) fn rivals(
+        &self,
+        all: &[Box<dyn Mechanism>],
+        none: &Fit,
+    ) -> Vec<Rival> {
+        let rival = |(which, log_evidence): &(Vec<usize>, f64)| Rival {
+            names: which.iter().map(|&i| all[i].name().to_owned()).collect(),
+            log10_bayes_factor: (log_evidence - none.log_evidence) / LN_10,
+        };
+        self.rivals.iter().map(rival).collect()
+    }
+
+    /// Calls the chosen mechanisms by the signs that they have together: one
+    /// that pushes alone may brake beside another.
+    pub(super) fn call(
+        &self,
+        judged: &mut [Judged],
+        all: &[Box<dyn Mechanism>],
+    ) {
+        let rows = rows_of(&self.fit.draws);
+        let mut first = 0;
+        for mechanism in self.mechanisms(all) {
+            let amplitudes = rows.iter().map(|row| row[first]);
+            let amplitude = median(&amplitudes.collect::<Vec<_>>());
+            first += mechanism.unknowns().len();
+            let named = judged.iter_mut().find(|m| m.name == mechanism.name());
+            if let Some(named) = named {
+                named.noun = mechanism.noun(amplitude);
+            }
+        }
+    }
+
+    /// The mechanisms themselves.
+    pub(super) fn mechanisms<'a>(
+        &self,
+        all: &'a [Box<dyn Mechanism>],
+    ) -> Vec<&'a dyn Mechanism> {
+        self.which.iter().map(|&i| all[i].as_ref()).collect()
+    }
+
+    /// The same, warned of where a pair of others reaches further.
+    fn rivalled(
+        mut self,
+        rival: Option<Self>,
+        all: &[Box<dyn Mechanism>],
+    ) -> Self {
+        if let Some(rival) = rival.filter(|r| rises(&r.fit, &self.fit)) {
+            let names: Vec<_> =
+                rival.mechanisms(all).iter().map(|m| m.name()).collect();
+            let gain = rival.fit.log_evidence - self.fit.log_evidence;
+            self.fit.warnings.push(format!(
+                "{} together reach a higher evidence still, by {:.1} in log10",
+                names.join(" and "),
+                gain / LN_10
+            ));
+        }
+        self
+    }
+
+    /// Where the mechanisms are confined to, by the medians of their edges.
+    ///
+    /// Of two modes of opposite sign (more friction here, or less everywhere
+    /// else) the more probable one counts: medians over both are nowhere.
+    pub(super) fn reaches(&self, all: &[Box<dyn Mechanism>]) -> Vec<Reach> {
+        let rows = rows_of(&self.fit.draws);
+        let mut first = 0;
+        let mut reaches = Vec::new();
+        for mechanism in self.mechanisms(all) {
+            let own = first..first + mechanism.unknowns().len();
+            first = own.end;
+            let up = rows.iter().filter(|row| row[own.start] > 0.0).count();
+            let sign = if 2 * up >= rows.len() { 1.0 } else { -1.0 };
+            let edges: Vec<Reach> = rows
+                .iter()
+                .filter(|row| row[own.start] * sign >= 0.0)
+                .filter_map(|row| mechanism.reach(&row[own.clone()]))
+                .collect();
+            let middle = |of: fn(&Reach) -> f64| {
+                median(&edges.iter().map(of).collect::<Vec<_>>())
+            };
+            reaches.extend(edges.first().map(|one| Reach {
+                axis: one.axis,
+                from: middle(|r| r.from),
+                to: middle(|r| r.to),
+            }));
+        }
+        reaches
+    }
+}
+
+fn rises(more: &Fit, less: &Fit) -> bool {
+    more.log_evidence - less.log_evidence > RISE * LN_10
+}
+
+fn most_evidence(fits: Vec<Option<Chosen>>) -> Option<Chosen> {
+    fits.into_iter()
+        .flatten()
+        .max_by(|a, b| a.fit.log_evidence.total_cmp(&b.fit.log_evidence))
+}
+
+/// The verdict once combinations are weighed too.
+///
+/// Where two or three mechanisms together were chosen, a single one is out of
+/// the question, and what they say goes: physics where one of them is of the
+/// physics, though the best single mechanism may be another noise. Where the
+/// free-form force is more probable than any single mechanism, several
+/// together must have more evidence than the force.
+pub(super) fn explained(
+    verdict: Verdict,
+    chosen: Option<Chosen>,
+    judged: &[Judged],
+    all: &[Box<dyn Mechanism>],
+) -> (Verdict, Option<Chosen>) {
+    let unknown = judged.iter().find(|m| m.name == "unknown");
+    let beyond = |c: &Chosen| {
+        verdict != Verdict::Unexplained
+            || unknown.is_some_and(|u| c.fit.log_evidence > u.log_evidence)
+    };
+    let Some(chosen) = chosen.filter(beyond) else { return (verdict, None) };
+    if chosen.which.len() == 1 && verdict != Verdict::Unexplained {
+        return (verdict, Some(chosen));
+    }
+    let families = chosen.mechanisms(all).into_iter().map(|m| m.family());
+    let verdict = match families.min() {
+        Some(Family::Physics) => Verdict::MissingPhysics,
+        Some(Family::Errors) | None => Verdict::Errors,
+        Some(_) => Verdict::Measurement,
+    };
+    (verdict, Some(chosen))
+}

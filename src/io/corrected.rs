@@ -1,0 +1,179 @@
+//! An event folder written again, with another model: what a diagnosis found
+//! goes into the user's own event.toml, whose comments and order stay.
+
+use std::path::Path;
+
+use toml_edit::{Array, DocumentMut, Item, TableLike, Value, table};
+
+use super::embedded;
+use super::event_file::{MOST_BYTES, find};
+use super::source::read_text;
+use super::words::place;
+use crate::error::{Error, Result};
+
+/// What is changed of an event's model.
+#[derive(Debug, Clone, Default)]
+pub struct Correction {
+    /// The friction law, where it is another than the file's.
+    pub friction: Option<String>,
+    /// The noise, where it is another than the file's.
+    pub noise: Option<String>,
+    /// The labels of all mechanisms.
+    pub mechanisms: Vec<String>,
+    /// The priors that the changed model has no parameters for.
+    pub unused: Vec<String>,
+}
+
+/// The files of an event with a corrected model, by their names in a folder:
+/// event.toml, recording.csv and, where the track has a file, track.csv. The
+/// event is the built-in one where no path is given.
+///
+/// # Errors
+/// Files that can no longer be read.
+pub fn corrected(
+    event: Option<&Path>,
+    correction: &Correction,
+) -> Result<Vec<(&'static str, String)>> {
+    let Some(path) = event else {
+        let text = edited(embedded::EVENT, Path::new(embedded::PLACE), |d| {
+            correct(d, correction)
+        })?;
+        return Ok(vec![
+            ("event.toml", text),
+            ("recording.csv", embedded::recording()),
+        ]);
+    };
+    let file = find(path)?;
+    let text = read_text(&file, MOST_BYTES)?;
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let mut data = Vec::new();
+    let text = edited(&text, &file, |document| {
+        correct(document, correction);
+        data = moved(document);
+    })?;
+    let mut files = vec![("event.toml", text)];
+    for (name, from) in data {
+        files.push((name, read_text(&folder.join(from), u64::MAX - 1)?));
+    }
+    Ok(files)
+}
+
+/// The text of an event.toml after a change, all else as it was.
+fn edited(
+    text: &str,
+    path: &Path,
+    change: impl FnOnce(&mut DocumentMut),
+) -> Result<String> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut document: DocumentMut = text.parse().map_err(|_| {
+        Error::input(format!("{}: is not TOML any more", place(path)))
+    })?;
+    change(&mut document);
+    Ok(document.to_string())
+}
+
+fn correct(document: &mut DocumentMut, correction: &Correction) {
+    let Correction { friction, noise, mechanisms, unused } = correction;
+    let model = document.entry("model").or_insert_with(table);
+    if let Some(model) = model.as_table_like_mut() {
+        for (key, name) in [("friction", friction), ("noise", noise)] {
+            if let Some(name) = name {
+                put(model, key, name.as_str());
+            }
+        }
+        put(model, "mechanisms", mechanisms.iter().collect::<Array>());
+    }
+    for name in unused {
+        remove(document.get_mut("priors"), name);
+    }
+}
+
+/// Names the data files anew, as they are called in the new folder; returns
+/// both names of each.
+fn moved(document: &mut DocumentMut) -> Vec<(&'static str, String)> {
+    let files = [("track", "track.csv"), ("recording", "recording.csv")];
+    files
+        .into_iter()
+        .filter_map(|(section, name)| {
+            let section = document.get_mut(section)?.as_table_like_mut()?;
+            let from = section.get("file")?.as_str()?.to_owned();
+            put(section, "file", name);
+            Some((name, from))
+        })
+        .collect()
+}
+
+/// Sets a key; what stands beside its value stays.
+fn put(section: &mut dyn TableLike, key: &str, value: impl Into<Value>) {
+    let mut value = value.into();
+    if let Some(old) = section.get(key).and_then(Item::as_value) {
+        *value.decor_mut() = old.decor().clone();
+    }
+    section.insert(key, Item::Value(value));
+}
+
+/// Removes a key, or one of two parts: `coulomb.mu`.
+fn remove(section: Option<&mut Item>, name: &str) {
+    let Some(section) = section.and_then(Item::as_table_like_mut) else {
+        return;
+    };
+    if section.remove(name).is_none()
+        && let Some((block, field)) = name.split_once('.')
+    {
+        remove(section.get_mut(block), field);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn after(text: &str) -> String {
+        let correction = Correction {
+            friction: Some("coulomb".into()),
+            mechanisms: vec!["surge".into(), "friction-step(time)".into()],
+            unused: vec!["xi".into(), "voellmy.mu".into()],
+            ..Correction::default()
+        };
+        edited(text, Path::new("event.toml"), |document| {
+            correct(document, &correction);
+            moved(document);
+        })
+        .unwrap()
+    }
+
+    const LIST: &str = "mechanisms = [\"surge\", \"friction-step(time)\"]\n";
+
+    #[test]
+    fn all_else_stays_as_the_user_wrote_it() {
+        let before = "# mine\nname = 'a'\n[track]\nslope = 1.0 # measured\n\
+                      [recording]\nfile = \"../x/r.csv\" # by radar\n\
+                      [model] # first guess\nfriction = \"voellmy\" # why\n\
+                      mechanisms = []\n[priors]\nmu = \"Gamma(9, 0.03)\"\n\
+                      xi = \"Gamma(2, 400)\"\nvoellmy.mu = \"Flat()\"\n";
+        let expected = before
+            .replace("../x/r.csv", "recording.csv")
+            .replace("\"voellmy\"", "\"coulomb\"")
+            .replace("mechanisms = []\n", LIST)
+            .replace("xi = \"Gamma(2, 400)\"\nvoellmy.mu = \"Flat()\"\n", "");
+        assert_eq!(after(before), expected);
+    }
+
+    #[test]
+    fn a_model_in_another_form_is_found_too() {
+        for model in
+            ["model = { noise = \"iid\" }\n", "model.noise = \"iid\"\n", ""]
+        {
+            let text = after(&format!("{model}[track]\nslope = 30.0\n"));
+            let document: DocumentMut = text.parse().unwrap();
+            let list = document["model"]["mechanisms"].as_array().unwrap();
+            assert_eq!(list.len(), 2, "{text}");
+            assert_eq!(
+                document["model"]["friction"].as_str(),
+                Some("coulomb")
+            );
+            let kept = document["model"].get("noise").is_some();
+            assert_eq!(kept, !model.is_empty(), "{text}");
+        }
+    }
+}
