@@ -165,6 +165,11 @@ impl Particle {
         }
     }
 
+    /// ln of the posterior's density, up to its constant.
+    pub(super) fn log_target(&self) -> f64 {
+        self.target
+    }
+
     fn tempered(&self, t: f64) -> f64 {
         if self.target == f64::NEG_INFINITY {
             return self.target;
