@@ -10,9 +10,9 @@ use couloir::Error;
 use couloir::challenge::{Case, Mix, cases};
 use couloir::discrepancy::attribute;
 use couloir::discrepancy::mechanisms::catalogue;
-use couloir::infer::Quiet;
+use couloir::infer::{Backend, Quiet, Smc};
 use couloir::io::parse_event;
-use couloir::model::Assembled;
+use couloir::model::{Assembled, Posterior, With};
 use couloir::physics::friction::Laws;
 use couloir::seed::Seed;
 
@@ -39,12 +39,9 @@ fn model_of(case: &Case) -> Assembled {
 /// chance was seen in 2 of 331 candidates, 60 below the best and further.
 const FAR: f64 = 30.0;
 
-/// Asked for and not met yet: of six seeds, the evidence of a friction patch
-/// in the first event was 0.7 too low with three. The weights of importance
-/// sampling are even enough to pass, and a tail of short, strong patches is
-/// missed that holds half of the posterior.
+/// The posterior of the patch in the first event has half of its mass in a
+/// tail of strong patches, along which friction as good as vanishes.
 #[test]
-#[ignore = "not met yet: a patch's ln Z is up to 0.7 too low"]
 fn evidences_repeat_within_three_tenths() {
     for effect in ["friction-patch", "surge", "clock-offset"] {
         let all = cases(20, 8, Mix::One).unwrap();
@@ -69,5 +66,31 @@ fn evidences_repeat_within_three_tenths() {
                 assert!(off < 0.3, "{effect}: {label} {logs:?}");
             }
         }
+    }
+}
+
+/// Tempering from the prior needs a hundred times as many simulations, and no
+/// start to climb from: what it says of the patch is what the peaks say.
+#[test]
+fn a_bent_tail_is_not_left_out() {
+    let all = cases(20, 8, Mix::One).unwrap();
+    let patched =
+        all.iter().find(|c| c.truth.effect == "friction-patch").unwrap();
+    let model = model_of(patched);
+    let mut candidates = catalogue(&model.event().extent(), &model.blocks());
+    candidates.retain(|mechanism| mechanism.name() == "friction-patch");
+    let mechanisms = [candidates[0].as_ref()];
+    let with = With::new(&model, &mechanisms);
+    let posterior = Posterior::new(&with).unwrap();
+    let smc = Smc { particles: 4000, ..Smc::default() };
+    let known = smc.explore(&posterior, Seed::new(1), &Quiet).unwrap();
+    let known = known.evidence.unwrap();
+    for seed in 2..=5 {
+        let found = attribute(&model, &candidates, Seed::new(seed), &Quiet);
+        let fit = &found.unwrap().candidates[0];
+        let off = fit.log_evidence - known.log;
+        // Four standard errors of the difference.
+        let se = fit.se.hypot(known.se);
+        assert!(off.abs() < 4.0 * se, "seed {seed}: {off} +- {se}");
     }
 }

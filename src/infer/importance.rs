@@ -184,7 +184,8 @@ fn placed(
     rows.par_iter().map(|z| base.particle(posterior, z.clone())).collect()
 }
 
-fn log_mean_weight(particles: &[Particle]) -> f64 {
+/// About ln Z, from draws of a proposal.
+pub(super) fn log_mean_weight(particles: &[Particle]) -> f64 {
     let logs = particles.iter().map(Particle::log_weight);
     super::log_sum_exp(logs) - (particles.len() as f64).ln()
 }

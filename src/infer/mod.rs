@@ -15,6 +15,7 @@ mod mh;
 mod mixture;
 #[cfg(feature = "nuts")]
 mod nuts;
+mod part;
 mod peaks;
 mod quadrature;
 mod reciprocal;
@@ -22,6 +23,7 @@ pub(crate) mod simplex;
 mod smc;
 mod start;
 mod told;
+mod walk;
 
 pub use bridge::Bridge;
 pub use descent::{Peak, climb};

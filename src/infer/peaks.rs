@@ -6,7 +6,8 @@
 //! for a hundredth of what a population led from the prior costs. Along
 //! coordinates that the data tell little of it is no peak but a [`Ridge`]:
 //! there the climbs keep to given places, and each leaves a component as wide
-//! as its neighbours are far. The normal approximations make a mixture whose
+//! as its neighbours are far. Walks away from the highest peaks find what
+//! their normal approximations leave out. All these make a mixture whose
 //! weights are learned from a first round of draws, and components are added
 //! where later ones miss them; importance sampling, with a share of the prior,
 //! corrects it; and where its weights stay poor, tempering from the mixture
@@ -14,13 +15,14 @@
 
 use std::ops::Range;
 
-use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::descent::{Peak, climb, climb_holding};
-use super::importance::{ImportanceSampling, cut};
+use super::importance::{ImportanceSampling, cut, log_mean_weight};
 use super::mixture::Mixture;
+use super::part::Part;
 use super::smc::{Base, Particle, Smc, effective, population};
+use super::walk::walks;
 use super::{Backend, Inference, Progress};
 use crate::draws::psis;
 use crate::error::{Error, Result};
@@ -63,14 +65,15 @@ const LEAST: f64 = 10.0;
 /// Peaks nearer than this many widths, squared, are one.
 const ONE: f64 = 1.0;
 /// An effective share that is enough with a Pareto tail index below 0.7, and
-/// one that is enough with an index below 1. Either may pass where a tail that no
-/// draw reaches is missed: 0.7 in ln was seen (tests/repeat.rs).
+/// one that is enough with an index below 1. Either passes where a tail is
+/// missed that no draw reaches, which it is for the walks to prevent.
 const ENOUGH: f64 = 0.1;
 const AMPLE: f64 = 0.25;
-/// Rounds of importance sampling before tempering takes over: after a few
-/// that teach the weights alone, each adds components where the draws are.
+/// Rounds of importance sampling before tempering takes over: from which on
+/// they fit components to the draws, and from which on they mend.
 const ROUNDS: u64 = 6;
 const WEIGHED: u64 = 2;
+const FITTED: u64 = 4;
 /// The most components that a round adds.
 const ADDED: usize = 6;
 /// From how many of the best places on ridges climbs start.
@@ -81,54 +84,6 @@ const FEW: usize = 8;
 /// The best that a place of a ridge allows: where, which coordinates were
 /// held, and how far the next places lie along them.
 type Along<'r> = (Peak, &'r Range<usize>, &'r [f64]);
-
-/// A normal approximation of a part of the posterior.
-struct Part {
-    /// About what it holds, in ln.
-    log: f64,
-    mean: DVector<f64>,
-    covariance: DMatrix<f64>,
-}
-
-impl Part {
-    fn new(peak: &Peak, precision: DMatrix<f64>) -> Option<Self> {
-        let factor = precision.cholesky()?;
-        let log_det: f64 = factor.l_dirty().diagonal().map(f64::ln).sum();
-        Some(Self {
-            log: peak.height - log_det,
-            mean: peak.line.clone(),
-            covariance: factor.inverse(),
-        })
-    }
-
-    /// About a peak.
-    fn of_peak(peak: &Peak) -> Option<Self> {
-        Self::new(peak, peak.precision.clone())
-    }
-
-    /// About a place on a ridge: as wide as the next ones are far along the
-    /// held coordinates, the others following as the precision tells.
-    fn of_place(
-        peak: &Peak,
-        held: &Range<usize>,
-        apart: &[f64],
-    ) -> Option<Self> {
-        let n = peak.line.len();
-        let free: Vec<usize> = (0..n).filter(|i| !held.contains(i)).collect();
-        let kept: Vec<usize> = held.clone().collect();
-        let mut joint = peak.precision.clone();
-        let inner = joint.select_rows(&free).select_columns(&free);
-        let across = joint.select_rows(&free).select_columns(&kept);
-        let follows = across.tr_mul(&inner.cholesky()?.solve(&across));
-        for (i, &row) in kept.iter().enumerate() {
-            for (j, &column) in kept.iter().enumerate() {
-                joint[(row, column)] = follows[(i, j)];
-            }
-            joint[(row, row)] += 1.0 / apart[i].powi(2);
-        }
-        Self::new(peak, joint)
-    }
-}
 
 impl Backend for Peaks {
     fn name(&self) -> &'static str {
@@ -157,7 +112,7 @@ impl Backend for Peaks {
                     seed.child(1),
                 );
             }
-            mixture = taught(mixture, found, round, seed.child(2));
+            mixture = taught(&mixture, &found, round, seed.child(2));
         }
         self.tempered(posterior, mixture, seed.child(100), progress)
     }
@@ -219,7 +174,8 @@ impl Peaks {
         let of_ridges = ridges.iter().filter_map(|(peak, held, apart)| {
             Part::of_place(peak, held, apart)
         });
-        Ok(of_peaks.chain(of_ridges).collect())
+        let of_walks = walks(posterior, &peaks)?;
+        Ok(of_peaks.chain(of_ridges).chain(of_walks).collect())
     }
 
     /// The peaks that all starts lead to, and the best places of ridges.
@@ -311,25 +267,33 @@ fn mixture(mut parts: Vec<Part>) -> Result<Mixture> {
     })
 }
 
-/// What a round of draws teaches the mixture: how much each component holds,
-/// and later where components are missing.
+/// What a round of draws teaches the mixture: in the first how much each
+/// component holds, then which components the heavy draws make, in the last
+/// where it is still far too low.
 fn taught(
-    mixture: Mixture,
-    found: Vec<Particle>,
+    mixture: &Mixture,
+    found: &[Particle],
     round: u64,
     seed: Seed,
 ) -> Mixture {
-    let weights = cut(&found);
-    if round < WEIGHED {
-        let places = found.iter().map(|p| p.z.as_slice());
-        return mixture.reweighted(places.zip(weights));
-    }
-    let places: Vec<Vec<f64>> = found.into_iter().map(|p| p.z).collect();
-    let added = Mixture::fit(&places, &weights, ADDED, &mut seed.rng());
-    match added {
-        Some(added) => added.beside(mixture),
-        None => mixture,
-    }
+    let weights = cut(found);
+    let rows: Vec<Vec<f64>> = found.iter().map(|p| p.z.clone()).collect();
+    let further = match round {
+        ..WEIGHED => None,
+        WEIGHED..FITTED => {
+            let added = Mixture::fit(&rows, &weights, ADDED, &mut seed.rng());
+            added.map(|added| added.beside(mixture.clone()))
+        }
+        FITTED.. => {
+            let scale = log_mean_weight(found);
+            let targets: Vec<f64> =
+                found.iter().map(|p| p.log_target() - scale).collect();
+            mixture.mended(&rows, &weights, &targets)
+        }
+    };
+    further.unwrap_or_else(|| {
+        mixture.reweighted(rows.iter().map(Vec::as_slice).zip(weights))
+    })
 }
 
 fn is_good(found: &[Particle]) -> bool {
