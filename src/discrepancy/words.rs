@@ -4,7 +4,9 @@ use super::phrases::{
     all_called, amounts, called, capital, event, friction, interval, judged,
     log10, model, own_name, probability, range, stretch, with_unit,
 };
-use super::{Baseline, Diagnosis, Judged, Mismatch, Pair, Told, Verdict};
+use super::{
+    Baseline, Diagnosis, Judged, Mismatch, Pair, Rival, Told, Verdict,
+};
 use crate::report::digits::{beside, p_value, per_cent, short, significant};
 use crate::report::text::{plain, unit};
 
@@ -194,20 +196,27 @@ fn explanation(d: &Diagnosis) -> String {
 
 /// What would do nearly as well as one of several selected.
 fn instead(d: &Diagnosis) -> String {
-    let Some(first) = d.rivals.first() else { return String::new() };
-    let given_up = d.selected.iter().find(|n| !first.names.contains(n));
-    let others = d.rivals.iter().flat_map(|rival| &rival.names);
-    let mut named: Vec<String> =
-        others.filter(|n| !d.selected.contains(n)).cloned().collect();
-    named.dedup();
+    let gives_up = |rival: &Rival| {
+        d.selected.iter().find(|n| !rival.names.contains(n)).cloned()
+    };
+    let Some(given_up) = d.rivals.first().and_then(gives_up) else {
+        return String::new();
+    };
+    let mut named: Vec<String> = Vec::new();
+    for rival in &d.rivals {
+        let alike = gives_up(rival).as_ref() == Some(&given_up);
+        for name in rival.names.iter().filter(|_| alike) {
+            if !d.selected.contains(name) && !named.contains(name) {
+                named.push(name.clone());
+            }
+        }
+    }
     named.truncate(TOLD);
-    given_up.map_or(String::new(), |given_up| {
-        format!(
-            ", and with {} instead of {} nearly as well",
-            all_called(d, &named, "or"),
-            all_called(d, std::slice::from_ref(given_up), "and"),
-        )
-    })
+    format!(
+        ", and with {} instead of {} nearly as well",
+        all_called(d, &named, "or"),
+        all_called(d, std::slice::from_ref(&given_up), "and"),
+    )
 }
 
 fn unexplained(d: &Diagnosis) -> String {
