@@ -1,7 +1,7 @@
 //! `couloir diagnose`: where simulation and recording differ, and what was
 //! left out.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
@@ -57,9 +57,8 @@ fn odds(text: &str) -> Result<(String, f64), String> {
     }
 }
 
-/// Event folders, by their names in the folder of the results: one, or one
-/// for each event.
-type Folders = Vec<(PathBuf, Vec<(&'static str, String)>)>;
+/// Files by their names in the folder of the results.
+type Files = Vec<(PathBuf, String)>;
 
 impl Arguments {
     pub(super) fn run(&self, laws: &Laws) -> Result<String> {
@@ -72,14 +71,11 @@ impl Arguments {
         let (found, labels) = self.diagnose(models, &told)?;
         drop(told);
         let json = pretty(&found.json());
-        let again = match &self.output.out {
-            Some(folder) => {
-                let again = corrected(&subjects, &labels, &found, laws)?;
-                self.write(folder, &found, &again)?;
-                again
-            }
-            None => Vec::new(),
-        };
+        let mut again = Files::new();
+        if let Some(folder) = &self.output.out {
+            again = corrected(&subjects, &labels, &found, laws)?;
+            write_all(folder, &[reports(&found), again.clone()].concat())?;
+        }
         if self.output.json {
             return Ok(json);
         }
@@ -90,23 +86,6 @@ impl Arguments {
         let mut text = summary(&found, width());
         text.push_str(&written(self.output.out.as_deref(), &files));
         Ok(text)
-    }
-
-    fn write(
-        &self,
-        folder: &Path,
-        found: &Diagnosis,
-        again: &Folders,
-    ) -> Result<()> {
-        let mut files = vec![
-            ("diagnosis.json", pretty(&found.json())),
-            ("report.html", page(found)),
-        ];
-        files.extend(found.draws.iter().map(|d| ("draws.csv", d.to_csv())));
-        write_all(folder, &files)?;
-        again
-            .iter()
-            .try_for_each(|(name, event)| write_all(&folder.join(name), event))
     }
 
     /// Each event with what the command line changes of it.
@@ -150,26 +129,34 @@ impl Arguments {
     }
 }
 
-/// The events again, with the mechanisms that were found; none where nothing
-/// of the catalogue was.
+fn reports(found: &Diagnosis) -> Files {
+    let mut files = vec![
+        ("diagnosis.json".into(), pretty(&found.json())),
+        ("report.html".into(), page(found)),
+    ];
+    files.extend(found.draws.iter().map(|d| ("draws.csv".into(), d.to_csv())));
+    files
+}
+
+/// The events again, with the mechanisms that were found, each in a folder of
+/// its own where there are several; none where nothing of the catalogue was.
 fn corrected(
     subjects: &[Subject],
     labels: &[String],
     found: &Diagnosis,
     laws: &Laws,
-) -> Result<Folders> {
+) -> Result<Files> {
     let had = found.baseline.mechanisms.len();
     let added = found.corrected.labels.get(had..).unwrap_or_default();
     if added.is_empty() {
-        return Ok(Vec::new());
+        return Ok(Files::new());
     }
-    subjects
-        .iter()
-        .enumerate()
-        .map(|(i, event)| {
-            let mut folder = PathBuf::from("corrected");
-            folder.extend(labels.get(i));
-            Ok((folder, event.corrected(laws, added)?))
-        })
-        .collect()
+    let mut files = Files::new();
+    for (i, event) in subjects.iter().enumerate() {
+        let mut folder = PathBuf::from("corrected");
+        folder.extend(labels.get(i));
+        let event = event.corrected(laws, added)?.into_iter();
+        files.extend(event.map(|(name, text)| (folder.join(name), text)));
+    }
+    Ok(files)
 }

@@ -22,20 +22,21 @@ impl Drop for Draft {
     }
 }
 
-/// Writes files, by name, into a folder, which is created where it is not
-/// there. Each is written under another name first and renamed once all are
-/// complete; files of the same names are replaced, others stay.
+/// Writes files, by name, into a folder. It is created where it is not there,
+/// as are the folders that names have before them. Each is written under
+/// another name first and renamed once all are complete; files of the same
+/// names are replaced, others stay.
 ///
 /// # Errors
 /// A system error that names the file and the machine's reason. Files whose
 /// turn to be renamed had not come are then left as they were.
-pub fn write_all(folder: &Path, files: &[(&str, String)]) -> Result<()> {
-    fs::create_dir_all(folder).map_err(|error| {
-        failed(folder, "the folder could not be created", &error)
-    })?;
+pub fn write_all<N: AsRef<Path>>(
+    folder: &Path,
+    files: &[(N, String)],
+) -> Result<()> {
     let drafts: Vec<Draft> = files
         .iter()
-        .map(|(name, text)| draft(folder, name, text))
+        .map(|(name, text)| draft(folder.join(name), text))
         .collect::<Result<_>>()?;
     for Draft { temporary, target } in &drafts {
         fs::rename(temporary, target).map_err(|error| {
@@ -45,10 +46,14 @@ pub fn write_all(folder: &Path, files: &[(&str, String)]) -> Result<()> {
     Ok(())
 }
 
-fn draft(folder: &Path, name: &str, text: &str) -> Result<Draft> {
+fn draft(target: PathBuf, text: &str) -> Result<Draft> {
+    let folder = target.parent().unwrap_or(Path::new(""));
+    fs::create_dir_all(folder).map_err(|error| {
+        failed(folder, "the folder could not be created", &error)
+    })?;
+    let name = target.file_name().unwrap_or_default().to_string_lossy();
     let hidden = format!(".{name}.{}.tmp", std::process::id());
-    let draft =
-        Draft { temporary: folder.join(hidden), target: folder.join(name) };
+    let draft = Draft { temporary: folder.join(hidden), target };
     let written = File::create(&draft.temporary).and_then(|mut file| {
         file.write_all(text.as_bytes())?;
         file.sync_all()
@@ -93,6 +98,9 @@ mod tests {
         write_all(&folder, &[("a", "3".into())]).unwrap();
         assert_eq!(names(&folder), ["a", "b"]);
         assert_eq!(fs::read_to_string(folder.join("a")).unwrap(), "3");
+        write_all(&folder, &[("again/c", "4".into())]).unwrap();
+        assert_eq!(names(&folder), ["a", "again", "b"]);
+        assert_eq!(fs::read_to_string(folder.join("again/c")).unwrap(), "4");
         fs::remove_dir_all(fresh("stay")).unwrap_or_default();
     }
 
