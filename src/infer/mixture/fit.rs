@@ -3,8 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
 
-use super::{Component, FREEDOM, Mixture, moments};
-use crate::infer::log_sum_exp;
+use super::{Component, FREEDOM, Mixture, Shares, moments};
 use crate::seed::Rng;
 
 /// The most rounds of a fit.
@@ -61,7 +60,7 @@ impl Mixture {
         let fit: f64 = points
             .iter()
             .zip(weights)
-            .map(|(z, w)| w * self.log_density_at(z))
+            .map(|(z, w)| w * self.log_density(z.as_slice()))
             .sum();
         -2.0 * effective * fit + unknowns * effective.ln()
     }
@@ -107,18 +106,14 @@ fn maximise(
     let mut masses = totals.clone();
     let mut means = vec![DVector::zeros(n); components.len()];
     let mut squares = vec![DMatrix::zeros(n, n); components.len()];
-    let mut fit = 0.0;
+    let (mut fit, mut shares) = (0.0, Shares::default());
     for (z, w) in points.iter().zip(weights).filter(|(_, w)| **w > 0.0) {
-        let distances: Vec<f64> =
-            components.iter().map(|c| c.distance(z)).collect();
-        let at = components.iter().zip(&distances);
-        let logs: Vec<f64> = at.map(|(c, d)| c.log_density_at(*d)).collect();
-        let total = log_sum_exp(logs.iter().copied());
-        fit += w * total;
+        fit += w * shares.at(components, z.as_slice());
         for k in 0..components.len() {
-            let share = w * (logs[k] - total).exp();
+            let share = w * shares.of[k];
             // The t's latent precision, given the point.
-            let precision = (FREEDOM + n as f64) / (FREEDOM + distances[k]);
+            let precision =
+                (FREEDOM + n as f64) / (FREEDOM + shares.distances[k]);
             totals[k] += share;
             masses[k] += share * precision;
             means[k].axpy(share * precision, z, 1.0);

@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::{Component, INFLATION, Mixture, moments};
+use crate::infer::log_sum_exp;
 
 /// A ratio of densities above which a place may need a component of its own,
 /// how much such places may add to the relative variance of the weights before
@@ -33,13 +34,18 @@ impl Mixture {
         let points: Vec<DVector<f64>> =
             draws.iter().map(|z| DVector::from_column_slice(z)).collect();
         let (_, covariance) = moments(&points, weights)?;
+        let mut logs: Vec<f64> =
+            draws.par_iter().map(|z| self.log_density(z)).collect();
         let mut mended = self.clone();
         for _ in 0..ADDED {
-            let Some(worst) = mended.worst(&points, weights, targets) else {
-                break;
-            };
-            let place = &points[worst];
-            mended.add(patch(&points, weights, place, &covariance)?);
+            let ratios: Vec<f64> =
+                targets.iter().zip(&logs).map(|(p, q)| p - q).collect();
+            let Some(worst) = worst(weights, &ratios) else { break };
+            let added = patch(&points, weights, &points[worst], &covariance)?;
+            for (log, z) in logs.iter_mut().zip(draws) {
+                *log = added.beside(*log, z);
+            }
+            mended.add(added);
         }
         if mended.components() == self.components() {
             return None;
@@ -52,34 +58,29 @@ impl Mixture {
         Some(mended)
     }
 
-    /// Where the ratio of a density to this is largest, if large ratios add
-    /// too much to the variance of the weights: E_q[(p/q)^2] = E_p[p/q].
-    fn worst(
-        &self,
-        points: &[DVector<f64>],
-        weights: &[f64],
-        targets: &[f64],
-    ) -> Option<usize> {
-        let ratios: Vec<f64> = points
-            .par_iter()
-            .zip(targets)
-            .map(|(z, target)| target - self.log_density_at(z))
-            .collect();
-        let large: Vec<usize> = (0..points.len())
-            .filter(|&i| weights[i] > 0.0 && ratios[i] > TOO_LARGE.ln())
-            .collect();
-        let added: f64 =
-            large.iter().map(|&i| weights[i] * ratios[i].exp()).sum();
-        let worst =
-            large.into_iter().max_by(|&i, &j| ratios[i].total_cmp(&ratios[j]));
-        worst.filter(|_| added > TOLERATED)
-    }
-
     /// Adds a component; the others make room for its weight.
     fn add(&mut self, component: Component) {
-        let left = (-component.log_weight.exp()).ln_1p();
-        self.components.iter_mut().for_each(|c| c.log_weight += left);
+        let left = 1.0 - component.weight;
+        self.components.iter_mut().for_each(|c| c.weight *= left);
         self.components.push(component);
+    }
+}
+
+/// Where the ratio of a density to a mixture is largest, if large ratios add
+/// too much to the variance of the weights: E_q[(p/q)^2] = E_p[p/q].
+fn worst(weights: &[f64], ratios: &[f64]) -> Option<usize> {
+    let large = (0..ratios.len())
+        .filter(|&i| weights[i] > 0.0 && ratios[i] > TOO_LARGE.ln());
+    let added: f64 = large.clone().map(|i| weights[i] * ratios[i].exp()).sum();
+    let worst = large.max_by(|&i, &j| ratios[i].total_cmp(&ratios[j]));
+    worst.filter(|_| added > TOLERATED)
+}
+
+impl Component {
+    /// The log density of a mixture at a place, once this is in it.
+    fn beside(&self, log: f64, z: &[f64]) -> f64 {
+        let own = self.log_density_at(self.distance(z));
+        log_sum_exp([log + (-self.weight).ln_1p(), own].into_iter())
     }
 }
 
@@ -94,7 +95,7 @@ fn patch(
     let whole = Component::new(1.0, place.clone(), covariance)?;
     let mut near: Vec<(f64, usize)> = (0..points.len())
         .into_par_iter()
-        .map(|i| (whole.distance(&points[i]), i))
+        .map(|i| (whole.distance(points[i].as_slice()), i))
         .collect();
     near.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut mass = 0.0;

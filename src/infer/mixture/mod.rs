@@ -10,7 +10,6 @@ mod mend;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rand::RngExt;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
-use smallvec::SmallVec;
 use statrs::function::gamma::ln_gamma;
 
 use super::log_sum_exp;
@@ -31,10 +30,15 @@ pub struct Mixture {
 
 #[derive(Debug, Clone)]
 struct Component {
-    log_weight: f64,
+    weight: f64,
     mean: DVector<f64>,
     shape: Cholesky<f64, Dyn>,
+    /// The rows of the shape's inverse factor, one after the other, each with
+    /// what it makes of the mean: densities are most of what importance
+    /// sampling costs.
+    whitening: Vec<f64>,
     log_constant: f64,
+    constant: f64,
 }
 
 impl Component {
@@ -43,37 +47,85 @@ impl Component {
         mean: DVector<f64>,
         covariance: &DMatrix<f64>,
     ) -> Option<Self> {
-        let n = mean.len() as f64;
+        let n = mean.len();
+        let dimension = n as f64;
         let shape = Cholesky::new(nudged(covariance))?;
         let log_det = 2.0 * shape.l().diagonal().map(f64::ln).sum();
-        let log_constant = ln_gamma(0.5 * (FREEDOM + n))
+        let log_constant = ln_gamma(0.5 * (FREEDOM + dimension))
             - ln_gamma(0.5 * FREEDOM)
-            - 0.5 * n * (FREEDOM * std::f64::consts::PI).ln()
+            - 0.5 * dimension * (FREEDOM * std::f64::consts::PI).ln()
             - 0.5 * log_det;
-        Some(Self { log_weight: weight.ln(), mean, shape, log_constant })
+        let inverse =
+            shape.l().solve_lower_triangular(&DMatrix::identity(n, n))?;
+        let white = &inverse * &mean;
+        let whitening = (0..n)
+            .flat_map(|i| {
+                let row = (0..=i).map(|j| inverse[(i, j)]);
+                row.chain([white[i]]).collect::<Vec<_>>()
+            })
+            .collect();
+        let constant = log_constant.exp();
+        Some(Self { weight, mean, shape, whitening, log_constant, constant })
     }
 
     /// The squared distance from the mean, in units of the shape.
-    fn distance(&self, z: &DVector<f64>) -> f64 {
-        let factor = self.shape.l_dirty();
-        let mut solved = SmallVec::<[f64; 16]>::new();
-        for i in 0..self.mean.len() {
-            let before = solved.iter().enumerate();
-            let known: f64 = before.map(|(j, x)| factor[(i, j)] * x).sum();
-            solved.push((z[i] - self.mean[i] - known) / factor[(i, i)]);
+    fn distance(&self, z: &[f64]) -> f64 {
+        let (mut sum, mut rest) = (0.0, &self.whitening[..]);
+        for i in 1..=z.len() {
+            let (row, after) = rest.split_at(i);
+            let white: f64 = row.iter().zip(z).map(|(r, z)| r * z).sum();
+            let (mean, after) = (after[0], &after[1..]);
+            sum += (white - mean) * (white - mean);
+            rest = after;
         }
-        solved.iter().map(|x| x * x).sum()
+        sum
     }
 
-    fn log_density(&self, z: &DVector<f64>) -> f64 {
-        self.log_density_at(self.distance(z))
+    /// The weighted density at such a squared distance:
+    /// (1 + d/nu)^(-(nu + n)/2), by whole powers and a root.
+    fn density_at(&self, distance: f64) -> f64 {
+        let power = FREEDOM as i32 + self.mean.len() as i32;
+        let falling = 1.0 / (1.0 + distance / FREEDOM);
+        let odd = if power % 2 == 1 { falling.sqrt() } else { 1.0 };
+        self.weight * self.constant * falling.powi(power / 2) * odd
     }
 
-    /// The log density at such a squared distance.
+    /// Its log, also where the density is beyond what a number can hold.
     fn log_density_at(&self, distance: f64) -> f64 {
         let n = self.mean.len() as f64;
-        self.log_weight + self.log_constant
+        self.weight.ln() + self.log_constant
             - 0.5 * (FREEDOM + n) * (distance / FREEDOM).ln_1p()
+    }
+}
+
+/// How components share a place.
+#[derive(Debug, Default)]
+struct Shares {
+    /// The squared distance of each.
+    distances: Vec<f64>,
+    /// The share of each in the density.
+    of: Vec<f64>,
+}
+
+impl Shares {
+    /// Those at a place, with the log density there.
+    fn at(&mut self, components: &[Component], z: &[f64]) -> f64 {
+        let Self { distances, of } = self;
+        distances.clear();
+        distances.extend(components.iter().map(|c| c.distance(z)));
+        let each = || components.iter().zip(distances.iter());
+        of.clear();
+        of.extend(each().map(|(c, d)| c.density_at(*d)));
+        let total: f64 = of.iter().sum();
+        if total > 0.0 && total.is_finite() {
+            of.iter_mut().for_each(|share| *share /= total);
+            return total.ln();
+        }
+        of.clear();
+        of.extend(each().map(|(c, d)| c.log_density_at(*d)));
+        let log = log_sum_exp(of.iter().copied());
+        of.iter_mut().for_each(|share| *share = (*share - log).exp());
+        log
     }
 }
 
@@ -98,9 +150,8 @@ impl Mixture {
                 Component::new(weight, mean, &covariance)
             })
             .collect();
-        let logs = components.iter().map(|c| c.log_weight);
-        let total = log_sum_exp(logs.collect::<Vec<_>>().into_iter());
-        components.iter_mut().for_each(|c| c.log_weight -= total);
+        let total: f64 = components.iter().map(|c| c.weight).sum();
+        components.iter_mut().for_each(|c| c.weight /= total);
         let mixture = (!components.is_empty()).then_some(Self { components });
         mixture.and_then(|mixture| mixture.inflated())
     }
@@ -114,20 +165,17 @@ impl Mixture {
         draws: impl Iterator<Item = (&'z [f64], f64)>,
     ) -> Self {
         let mut totals = vec![0.0; self.components.len()];
+        let mut shares = Shares::default();
         for (z, weight) in draws {
-            let z = DVector::from_column_slice(z);
-            let logs: Vec<f64> =
-                self.components.iter().map(|c| c.log_density(&z)).collect();
-            let total = log_sum_exp(logs.iter().copied());
-            for (sum, log) in totals.iter_mut().zip(logs) {
-                *sum += weight * (log - total).exp();
+            shares.at(&self.components, z);
+            for (sum, share) in totals.iter_mut().zip(&shares.of) {
+                *sum += weight * share;
             }
         }
         // Half of the old weight stays: a round may have missed a part.
         let mut components = self.components.clone();
         for (component, total) in components.iter_mut().zip(totals) {
-            let before = component.log_weight.exp();
-            component.log_weight = (0.5 * (before + total)).ln();
+            component.weight = 0.5 * (component.weight + total);
         }
         Self { components }
     }
@@ -136,16 +184,14 @@ impl Mixture {
     #[must_use]
     pub(super) fn beside(mut self, other: Self) -> Self {
         self.components.extend(other.components);
-        for component in &mut self.components {
-            component.log_weight -= std::f64::consts::LN_2;
-        }
+        self.components.iter_mut().for_each(|c| c.weight *= 0.5);
         self
     }
 
     fn inflated(&self) -> Option<Self> {
         let wide = |c: &Component| {
             let covariance = c.shape.l() * c.shape.l().transpose() * INFLATION;
-            Component::new(c.log_weight.exp(), c.mean.clone(), &covariance)
+            Component::new(c.weight, c.mean.clone(), &covariance)
         };
         let components =
             self.components.iter().map(wide).collect::<Option<_>>()?;
@@ -159,11 +205,13 @@ impl Mixture {
 
     /// The log density at a place on the real line.
     pub fn log_density(&self, z: &[f64]) -> f64 {
-        self.log_density_at(&DVector::from_column_slice(z))
-    }
-
-    fn log_density_at(&self, z: &DVector<f64>) -> f64 {
-        log_sum_exp(self.components.iter().map(|c| c.log_density(z)))
+        let at = |c: &Component| c.density_at(c.distance(z));
+        let total: f64 = self.components.iter().map(at).sum();
+        if total > 0.0 && total.is_finite() {
+            return total.ln();
+        }
+        let at = |c: &Component| c.log_density_at(c.distance(z));
+        log_sum_exp(self.components.iter().map(at))
     }
 
     /// One draw, a place on the real line.
@@ -172,7 +220,7 @@ impl Mixture {
         let mut chosen = &self.components[0];
         for component in &self.components {
             chosen = component;
-            u -= component.log_weight.exp();
+            u -= component.weight;
             if u < 0.0 {
                 break;
             }
@@ -203,4 +251,29 @@ fn moments(
         covariance.ger(*w, &d, &d, 1.0);
     }
     Some((mean, covariance))
+}
+
+#[cfg(test)]
+mod tests {
+    use statrs::distribution::{Continuous, StudentsT};
+
+    use super::*;
+
+    #[test]
+    fn one_component_is_a_t_distribution_however_far() {
+        let (mean, variance) = (2.0, 0.25);
+        let part = (
+            1.0,
+            DVector::from_element(1, mean),
+            DMatrix::from_element(1, 1, variance),
+        );
+        let mixture = Mixture::of([part].into_iter()).unwrap();
+        let scale = (variance * INFLATION).sqrt();
+        let known = StudentsT::new(mean, scale, FREEDOM).unwrap();
+        // Where a density is below what a number can hold its log is not.
+        for z in [2.0, 2.3, -1.0, 50.0, 1e8, 1e60] {
+            let off = mixture.log_density(&[z]) - known.ln_pdf(z);
+            assert!(off.abs() < 1e-8, "{z}: {off}");
+        }
+    }
 }
