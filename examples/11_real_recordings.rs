@@ -45,7 +45,13 @@ fn model(path: &Path, rate: f64, own: &[(&str, &str)]) -> Result<Assembled> {
 /// One line of a Markdown table.
 fn row(what: &str, d: &Diagnosis) {
     let i = d.improvement;
-    let size = d.parameters.first().map_or(String::new(), |p| {
+    let physics = |name: &str| {
+        let mut added = d.mechanisms.iter().filter(|m| m.kind == "physics");
+        added
+            .any(|m| d.selected.contains(&m.name) && name.starts_with(&m.name))
+    };
+    let size = d.parameters.iter().find(|p| physics(&p.name));
+    let size = size.map_or(String::new(), |p| {
         format!("{} {:.2} ({:.2} to {:.2})", p.name, p.q50, p.q05, p.q95)
     });
     println!(

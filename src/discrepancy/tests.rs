@@ -59,6 +59,27 @@ fn the_words_of_a_patch() {
 }
 
 #[test]
+fn rivals_are_told_once_and_of_the_same_term() {
+    let with = |names: [&str; 2]| Rival {
+        names: names.map(str::to_owned).to_vec(),
+        log10_bayes_factor: 21.0,
+    };
+    let told = Diagnosis {
+        selected: ["friction-patch", "ar1"].map(str::to_owned).to_vec(),
+        rivals: vec![
+            with(["ar1", "entrainment"]),
+            with(["friction-patch", "surge"]),
+            with(["ar1", "entrainment"]),
+        ],
+        ..diagnosis()
+    };
+    let words = in_words(&told).join(" ");
+    let said = "explain this, and with entrainment of snow along a stretch \
+                instead of a patch of higher friction nearly as well; alone,";
+    assert!(words.contains(said), "{words}");
+}
+
+#[test]
 fn every_verdict_has_its_words() {
     for d in all() {
         let words = in_words(&d);
