@@ -208,7 +208,7 @@ fn a_diagnosis_writes_an_event_that_runs() {
     let arguments = ["diagnose", event, "--friction", "coulomb", "--out", out];
     let output = couloir(&arguments);
     assert!(output.status.success(), "{}", said(&output));
-    assert!(printed(&output).contains("draws.csv, corrected/"));
+    assert!(printed(&output).contains("draws.csv, pictures/, corrected/"));
     let read = |name: &str| {
         std::fs::read_to_string(Path::new(out).join(name)).unwrap()
     };

@@ -1,7 +1,7 @@
 //! `couloir diagnose`: where simulation and recording differ, and what was
 //! left out.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
@@ -10,7 +10,7 @@ use super::progress::Told;
 use super::{Output, Subject, width, written};
 use crate::discrepancy::{
     Diagnosis, Odds, Options, Sharing, Together, diagnose, diagnose_together,
-    page, summary,
+    page, pictures, summary,
 };
 use crate::error::{Error, Result};
 use crate::io::write_all;
@@ -79,7 +79,8 @@ impl Arguments {
         if self.output.json {
             return Ok(json);
         }
-        let mut files = vec!["report.html", "diagnosis.json", "draws.csv"];
+        let mut files =
+            vec!["report.html", "diagnosis.json", "draws.csv", "pictures/"];
         if !again.is_empty() {
             files.push("corrected/");
         }
@@ -135,6 +136,9 @@ fn reports(found: &Diagnosis) -> Files {
         ("report.html".into(), page(found)),
     ];
     files.extend(found.draws.iter().map(|d| ("draws.csv".into(), d.to_csv())));
+    let folder = Path::new("pictures");
+    let pictures = pictures(found).into_iter();
+    files.extend(pictures.map(|(name, svg)| (folder.join(name), svg)));
     files
 }
 

@@ -206,12 +206,15 @@ fn complain(message: &str) {
     eprintln!("couloir: {message}");
 }
 
-/// Where the results are, in the line that ends what is printed: nothing
-/// where no folder was asked for.
+/// Where the results are, at the end of what is printed: nothing where no
+/// folder was asked for.
 fn written(folder: Option<&Path>, files: &[&str]) -> String {
-    folder.map_or_else(String::new, |folder| {
-        format!("\nWritten to {}: {}\n", folder.display(), files.join(", "))
-    })
+    let Some(folder) = folder else { return String::new() };
+    let (head, files) =
+        (format!("Written to {}:", folder.display()), files.join(", "));
+    let both = head.chars().count() + 1 + files.chars().count();
+    let between = if both > width() { "\n  " } else { " " };
+    format!("\n{head}{between}{files}\n")
 }
 
 /// The width to print to: that of the terminal, 80 at the most.

@@ -38,6 +38,7 @@ pub use judge::Odds;
 pub use locate::{CELLS, FreeForce, locate};
 pub use options::Options;
 pub use page::page;
+pub use pictures::pictures;
 pub use summary::summary;
 pub use together::{PerEvent, Pooled, Sharing, Together};
 pub use words::in_words;

@@ -1,18 +1,11 @@
 //! What holds for every form of a diagnosis: words, terminal, page.
 
 use super::fixture::{adequate, all, diagnosis, of};
-use super::pictures::{Figure, bars, forces, recording, track};
+use super::pictures::figures;
 use super::*;
 use crate::report::fixture::assert_unique_ids;
 
 const HOSTILE: &str = "<script>alert(1)</script>&\"'\u{1b}[31m";
-
-fn figures(d: &Diagnosis) -> Vec<Figure> {
-    let each = d.pictured.iter().flat_map(|p| {
-        [track(d, p, "track-0"), recording(d, p, "recording-0")]
-    });
-    each.chain([forces(d), bars(d)]).flatten().collect()
-}
 
 /// Every tag is closed, in order, and no `<` or `&` stands alone.
 fn assert_well_formed(svg: &str) {

@@ -28,6 +28,30 @@ pub(super) struct Figure {
     pub(super) svg: String,
 }
 
+/// All pictures of a diagnosis.
+pub(super) fn figures(d: &Diagnosis) -> Vec<Figure> {
+    let each = d.pictured.iter().enumerate().flat_map(|(i, p)| {
+        let name = |what: &str| format!("{what}-{i}");
+        [track(d, p, &name("track")), recording(d, p, &name("recording"))]
+    });
+    each.chain([forces(d), bars(d)]).flatten().collect()
+}
+
+/// The pictures of a diagnosis as files: the name of each, and an SVG document
+/// on white that needs nothing else.
+///
+/// ```
+/// use couloir::discrepancy::{Diagnosis, pictures};
+/// assert!(pictures(&Diagnosis::default()).is_empty());
+/// ```
+pub fn pictures(d: &Diagnosis) -> Vec<(String, String)> {
+    let white = "<svg style=\"background: #fff\" ";
+    let file = |f: Figure| {
+        (format!("{}.svg", f.id), f.svg.replacen("<svg ", white, 1))
+    };
+    figures(d).into_iter().map(file).collect()
+}
+
 /// Fills the stretches of a panel in which the mismatch lies.
 fn shade(canvas: &mut Canvas, axes: &Axes, stretches: &[(f64, f64)]) {
     let Frame { top, bottom, .. } = axes.frame;
