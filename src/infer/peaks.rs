@@ -80,6 +80,10 @@ const ADDED: usize = 6;
 const BEST: usize = 8;
 /// Steps of a climb along a ridge, which begins nearby.
 const FEW: usize = 8;
+/// Of how many draws from the prior the likeliest is a start, and how many are
+/// made for these at the most.
+const DRAWN: usize = 8;
+const TRIES: usize = 200;
 
 /// The best that a place of a ridge allows: where, which coordinates were
 /// held, and how far the next places lie along them.
@@ -190,7 +194,7 @@ impl Peaks {
             .into_par_iter()
             .map(|i| likely(posterior, seed.child(i as u64)))
             .collect::<Result<Vec<_>>>()?;
-        starts.extend(drawn);
+        starts.extend(drawn.into_iter().flatten());
         let mut high: Vec<&Peak> = ridges.iter().map(|r| &r.0).collect();
         high.sort_by(|a, b| b.height.total_cmp(&a.height));
         let best = high.iter().take(BEST);
@@ -235,18 +239,28 @@ impl Peaks {
     }
 }
 
-/// The likeliest of a few draws from the prior.
-fn likely(posterior: &Posterior<'_>, seed: Seed) -> Result<Vec<f64>> {
+/// The likeliest of a few draws from the prior; `None` where the model rejects
+/// every draw before all its parameters are known, as one of several events
+/// may.
+fn likely(posterior: &Posterior<'_>, seed: Seed) -> Result<Option<Vec<f64>>> {
     let mut rng = seed.rng();
-    let mut best = (f64::NEG_INFINITY, Vec::new());
-    for _ in 0..8 {
+    let mut best: Option<(f64, Vec<f64>)> = None;
+    let mut whole = 0;
+    for _ in 0..TRIES {
         let (density, found) = posterior.draw_prior(&mut rng)?;
-        let whole = found.line.len() == posterior.dimension();
-        if whole && (best.1.is_empty() || density.log_likelihood > best.0) {
-            best = (density.log_likelihood, found.line);
+        if found.line.len() < posterior.dimension() {
+            continue;
+        }
+        let log = density.log_likelihood;
+        if best.as_ref().is_none_or(|(most, _)| log > *most) {
+            best = Some((log, found.line));
+        }
+        whole += 1;
+        if whole == DRAWN {
+            break;
         }
     }
-    Ok(best.1)
+    Ok(best.map(|(_, line)| line))
 }
 
 /// The mixture of the parts, each weighing about what it holds: the square
@@ -301,4 +315,48 @@ fn is_good(found: &[Particle]) -> bool {
     let share = effective(&logs, 1.0) / logs.len() as f64;
     let (_, k) = psis(&logs);
     (share > ENOUGH && k < 0.7) || (share > AMPLE && k < 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use statrs::function::erf::erf;
+
+    use super::*;
+    use crate::error::{Outcome, Stop};
+    use crate::infer::{Evidence, Quiet};
+    use crate::model::{Label, Number, Program, Run};
+    use crate::prior::AnyPrior;
+
+    /// b ~ N(0, 1) is asked for only where a ~ N(0, 1) is near 0.
+    struct CutShort;
+
+    const NEAR: f64 = 0.05;
+
+    impl Program for CutShort {
+        fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
+            let normal = AnyPrior::Normal(0.0, 1.0);
+            let a = run.scalar(Label::new("a", "1"), normal)?;
+            if a.value().abs() > NEAR {
+                return Err(Stop::Reject("a is not near 0"));
+            }
+            run.scalar(Label::new("b", "1"), normal)?;
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn draws_that_are_cut_short_count_as_nothing() {
+        // One draw in 25 is whole: of eight mostly none.
+        let posterior = Posterior::new(&CutShort).unwrap();
+        let peaks = Peaks { starts: 8, ..Peaks::default() };
+        let smc = Smc { particles: 4000, ..Smc::default() };
+        let known = erf(NEAR / 2.0_f64.sqrt()).ln();
+        for backend in [&peaks as &dyn Backend, &smc] {
+            let found = backend.explore(&posterior, Seed::new(1), &Quiet);
+            let Evidence { log, se, .. } = found.unwrap().evidence.unwrap();
+            // Four standard errors of the estimate.
+            let name = backend.name();
+            assert!((log - known).abs() < 4.0 * se, "{name}: {log} +- {se}");
+        }
+    }
 }

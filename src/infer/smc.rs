@@ -113,13 +113,15 @@ impl Base {
         posterior: &Posterior<'_>,
         rng: &mut Rng,
     ) -> Result<Particle> {
-        let z = match self {
+        match self {
             Self::Mixture(mixture) if rng.random::<f64>() >= PRIOR_SHARE => {
-                mixture.draw(rng)
+                self.particle(posterior, mixture.draw(rng))
             }
-            _ => draw_prior(posterior, rng)?,
-        };
-        self.particle(posterior, z)
+            _ => match draw_prior(posterior, rng)? {
+                Some(z) => self.particle(posterior, z),
+                None => Ok(Particle::without_density(posterior.dimension())),
+            },
+        }
     }
 
     pub(super) fn particle(
@@ -134,17 +136,16 @@ impl Base {
     }
 }
 
-/// A draw from the prior on the real line. A draw that the model rejects
-/// before all its parameters are known is drawn again.
-fn draw_prior(posterior: &Posterior<'_>, rng: &mut Rng) -> Result<Vec<f64>> {
-    for _ in 0..1000 {
-        let (_, found) = posterior.draw_prior(rng)?;
-        let complete = found.line.len() == posterior.dimension();
-        if complete && found.line.iter().all(|z| z.is_finite()) {
-            return Ok(found.line);
-        }
-    }
-    Err(Error::inference("the prior cannot be drawn from"))
+/// A draw from the prior on the real line; `None` where the model rejects it
+/// before all its parameters are known.
+fn draw_prior(
+    posterior: &Posterior<'_>,
+    rng: &mut Rng,
+) -> Result<Option<Vec<f64>>> {
+    let (_, found) = posterior.draw_prior(rng)?;
+    let complete = found.line.len() == posterior.dimension();
+    let whole = complete && found.line.iter().all(|z| z.is_finite());
+    Ok(whole.then_some(found.line))
 }
 
 /// A place with its log densities under base and posterior.
@@ -156,6 +157,13 @@ pub(super) struct Particle {
 }
 
 impl Particle {
+    /// Somewhere, with no weight: what a draw counts as that is cut short. To
+    /// draw again instead would raise the evidence by the share of such draws.
+    fn without_density(dimension: usize) -> Self {
+        let (base, target) = (0.0, f64::NEG_INFINITY);
+        Self { z: vec![0.0; dimension], base, target }
+    }
+
     /// ln of the importance weight of the whole way.
     pub(super) fn log_weight(&self) -> f64 {
         if self.target == f64::NEG_INFINITY {
