@@ -70,22 +70,22 @@ impl Arguments {
         let told = Told::new();
         let (found, labels) = self.diagnose(models, &told)?;
         drop(told);
-        let json = pretty(&found.json());
-        let mut again = Files::new();
+        let mut names =
+            vec!["report.html", "diagnosis.json", "draws.csv", "pictures/"];
         if let Some(folder) = &self.output.out {
-            again = corrected(&subjects, &labels, &found, laws)?;
-            write_all(folder, &[reports(&found), again.clone()].concat())?;
+            let again = corrected(&subjects, &labels, &found, laws)?;
+            if !again.is_empty() {
+                names.push("corrected/");
+            }
+            let mut files = reports(&found);
+            files.extend(again);
+            write_all(folder, &files)?;
         }
         if self.output.json {
-            return Ok(json);
-        }
-        let mut files =
-            vec!["report.html", "diagnosis.json", "draws.csv", "pictures/"];
-        if !again.is_empty() {
-            files.push("corrected/");
+            return Ok(pretty(&found.json()));
         }
         let mut text = summary(&found, width());
-        text.push_str(&written(self.output.out.as_deref(), &files));
+        text.push_str(&written(self.output.out.as_deref(), &names));
         Ok(text)
     }
 

@@ -3,7 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::phrases::friction;
-use super::pictures::{Figure, bars, forces, recording, track};
+use super::pictures::{Figure, bars, forces, of_event};
 use super::words::{before_and_after, in_words, is_corrected};
 use super::{Diagnosis, Pictured, Told, Verdict};
 use crate::report::digits::{beside, significant};
@@ -112,11 +112,10 @@ fn pictured(d: &Diagnosis, p: &Pictured, i: usize) -> Markup {
         true => "Recording and prediction",
         false => "Recording and prediction, before and after",
     };
+    let [track, recording] = of_event(d, p, i);
     html! {
-        (section(&title(place), track(d, p, &format!("track-{i}"))))
-        (section(
-            &title(prediction),
-            recording(d, p, &format!("recording-{i}"))))
+        (section(&title(place), track))
+        (section(&title(prediction), recording))
     }
 }
 

@@ -197,25 +197,23 @@ fn explanation(d: &Diagnosis) -> String {
 /// What would do nearly as well as one of several selected.
 fn instead(d: &Diagnosis) -> String {
     let gives_up = |rival: &Rival| {
-        d.selected.iter().find(|n| !rival.names.contains(n)).cloned()
+        d.selected.iter().find(|name| !rival.names.contains(name))
     };
     let Some(given_up) = d.rivals.first().and_then(gives_up) else {
         return String::new();
     };
     let mut named: Vec<String> = Vec::new();
-    for rival in &d.rivals {
-        let alike = gives_up(rival).as_ref() == Some(&given_up);
-        for name in rival.names.iter().filter(|_| alike) {
-            if !d.selected.contains(name) && !named.contains(name) {
-                named.push(name.clone());
-            }
+    let alike = |rival: &&Rival| gives_up(rival) == Some(given_up);
+    for name in d.rivals.iter().filter(alike).flat_map(|r| &r.names) {
+        if !d.selected.contains(name) && !named.contains(name) {
+            named.push(name.clone());
         }
     }
     named.truncate(TOLD);
     format!(
         ", and with {} instead of {} nearly as well",
         all_called(d, &named, "or"),
-        all_called(d, std::slice::from_ref(&given_up), "and"),
+        all_called(d, std::slice::from_ref(given_up), "and"),
     )
 }
 

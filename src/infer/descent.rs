@@ -44,6 +44,8 @@ impl Peak {
 
 /// The most steps of a climb.
 const STEPS: usize = 60;
+/// The most of one that begins nearby.
+const FEW: usize = 8;
 /// A gain of the log density below which a climb has arrived.
 const ARRIVED: f64 = 1e-3;
 /// The longest step along one axis of the line.
@@ -57,15 +59,24 @@ pub fn climb(
     posterior: &Posterior<'_>,
     start: &[f64],
 ) -> Result<Option<Peak>> {
-    climb_holding(posterior, start, 0..0, STEPS)
+    ascend(posterior, start, &(0..0), STEPS)
 }
 
-/// The same within the places that share some coordinates with the start, in
-/// so many steps at most.
+/// The same within the places that share some coordinates with the start, near
+/// which the best of them lies.
 pub(super) fn climb_holding(
     posterior: &Posterior<'_>,
     start: &[f64],
-    held: Range<usize>,
+    held: &Range<usize>,
+) -> Result<Option<Peak>> {
+    ascend(posterior, start, held, FEW)
+}
+
+/// A climb in so many steps at most, some coordinates held.
+fn ascend(
+    posterior: &Posterior<'_>,
+    start: &[f64],
+    held: &Range<usize>,
     steps: usize,
 ) -> Result<Option<Peak>> {
     let mut line = DVector::from_column_slice(start);
@@ -77,7 +88,7 @@ pub(super) fn climb_holding(
     let mut idle = 0;
     for _ in 0..steps {
         let height = about.density.on_line();
-        let Some(next) = step(posterior, &line, &about, &held, &mut lambda)?
+        let Some(next) = step(posterior, &line, &about, held, &mut lambda)?
         else {
             break;
         };

@@ -11,11 +11,11 @@
 use rayon::prelude::*;
 
 use super::mixture::Mixture;
-use super::smc::{Base, Particle, Smc, population, systematic};
+use super::smc::{Base, Particle, Smc, log_target, population, systematic};
 use super::{Backend, Effort, Evidence, Inference, Progress, draws_of};
 use crate::draws::{Draws, psis};
 use crate::error::Result;
-use crate::model::Posterior;
+use crate::model::{Density, Point, Posterior};
 use crate::seed::Seed;
 
 /// Importance sampling by a Student-t mixture.
@@ -98,17 +98,25 @@ impl ImportanceSampling {
             .map(|row| posterior.line(row))
             .collect::<Result<_>>()?;
         progress.begin("importance sampling", None);
+        let densities: Vec<Density> = given
+            .par_iter()
+            .map(|z| posterior.density(Point::Line(z)))
+            .collect::<Result<_>>()?;
         let mut base = self.fitted(posterior, &given, seed, progress)?;
-        let given = placed(posterior, &base, &given)?;
         let mut whole = true;
         if let Base::Mixture(mixture) = base {
+            let targets: Vec<f64> = densities.iter().map(log_target).collect();
+            let given = (&given[..], &targets[..]);
             let seed = seed.child(30);
             (base, whole) =
-                self.mended(posterior, mixture, &given, seed, progress)?;
+                self.mended(posterior, mixture, given, seed, progress)?;
         }
         let found = population(posterior, &base, self.draws, seed.child(20))?;
-        let rows: Vec<_> = given.into_iter().map(|p| p.z).collect();
-        let given = placed(posterior, &base, &rows)?;
+        let given: Vec<Particle> = given
+            .into_iter()
+            .zip(&densities)
+            .map(|(z, density)| base.weighed(z, density))
+            .collect();
         let mut made = Self::conclude(posterior, &found, seed.child(21))?;
         if let Some(evidence) = &mut made.evidence {
             let seen = error_at(&given, evidence.log, found.len());
@@ -141,8 +149,8 @@ impl ImportanceSampling {
         Ok(base)
     }
 
-    /// A proposal with more components where given draws or its own show that
-    /// it is far too low (incremental mixture importance sampling, Raftery,
+    /// A proposal with more components where given draws, whose target
+    /// densities come with them, or its own show that it is far too low (incremental mixture importance sampling, Raftery,
     /// Bao 2010), and whether its last draws show no such place any more. A
     /// mixture of a few components fits the bulk, whatever it leaves out of a
     /// bent tail.
@@ -150,21 +158,20 @@ impl ImportanceSampling {
         &self,
         posterior: &Posterior<'_>,
         mut mixture: Mixture,
-        given: &[Particle],
+        (places, known): (&[Vec<f64>], &[f64]),
         seed: Seed,
         progress: &dyn Progress,
     ) -> Result<(Base, bool)> {
-        let places: Vec<_> = given.iter().map(|p| p.z.clone()).collect();
         for round in 0..MENDS {
             let count = (self.draws / 4).max(500);
             let base = Base::Mixture(mixture.clone());
             let found =
                 population(posterior, &base, count, seed.child(round))?;
             let scale = log_mean_weight(&found);
-            let both = given.iter().chain(&found);
-            let targets: Vec<f64> =
-                both.map(|p| p.log_target() - scale).collect();
-            let (rows, weights) = joined(&places, found);
+            let own = found.iter().map(Particle::log_target);
+            let both = known.iter().copied().chain(own);
+            let targets: Vec<f64> = both.map(|log| log - scale).collect();
+            let (rows, weights) = joined(places, found);
             progress.advance(count as u64);
             match mixture.mended(&rows, &weights, &targets) {
                 Some(mended) => mixture = mended,
@@ -173,15 +180,6 @@ impl ImportanceSampling {
         }
         Ok((Base::Mixture(mixture), false))
     }
-}
-
-/// Places with their densities.
-fn placed(
-    posterior: &Posterior<'_>,
-    base: &Base,
-    rows: &[Vec<f64>],
-) -> Result<Vec<Particle>> {
-    rows.par_iter().map(|z| base.particle(posterior, z.clone())).collect()
 }
 
 /// About ln Z, from draws of a proposal.
@@ -316,7 +314,11 @@ mod tests {
         let n = 10_000;
         let quantile = |i| after.inverse_cdf((f64::from(i) + 0.5) / 1e4);
         let rows: Vec<_> = (0..n).map(|i| vec![quantile(i)]).collect();
-        let given = placed(&posterior, &Base::Prior, &rows).unwrap();
+        let given = rows.into_iter().map(|z| {
+            let density = posterior.density(Point::Line(&z)).unwrap();
+            Base::Prior.weighed(z, &density)
+        });
+        let given: Vec<Particle> = given.collect();
         // Z = N(0; 0, 2), and E_q[w^2] / Z^2 = 2 / sqrt(3) with the prior as
         // q.
         let log_evidence = -0.5 * (2.0 * std::f64::consts::TAU).ln();

@@ -22,6 +22,7 @@ use super::importance::{ImportanceSampling, cut, log_mean_weight};
 use super::mixture::Mixture;
 use super::part::Part;
 use super::smc::{Base, Particle, Smc, effective, population};
+use super::start::drawn;
 use super::walk::walks;
 use super::{Backend, Inference, Progress};
 use crate::draws::psis;
@@ -80,8 +81,6 @@ const ADDED: usize = 6;
 /// one mode at times: a surge of a few seconds was missed with 3 of 16 seeds,
 /// and with none of 32 from so many.
 const BEST: usize = 24;
-/// Steps of a climb along a ridge, which begins nearby.
-const FEW: usize = 8;
 /// Of how many draws from the prior the likeliest is a start, and how many are
 /// made for these at the most.
 const DRAWN: usize = 8;
@@ -233,7 +232,7 @@ impl Peaks {
         let found = places
             .into_par_iter()
             .map(|(held, start, apart)| {
-                let peak = climb_holding(posterior, start, held.clone(), FEW)?;
+                let peak = climb_holding(posterior, start, held)?;
                 Ok(peak.map(|peak| (peak, held, &apart[..])))
             })
             .collect::<Result<Vec<_>>>()?;
@@ -241,21 +240,19 @@ impl Peaks {
     }
 }
 
-/// The likeliest of a few draws from the prior; `None` where the model rejects
-/// every draw before all its parameters are known, as one of several events
-/// may.
+/// The likeliest of a few draws from the prior; `None` where all are cut
+/// short.
 fn likely(posterior: &Posterior<'_>, seed: Seed) -> Result<Option<Vec<f64>>> {
     let mut rng = seed.rng();
     let mut best: Option<(f64, Vec<f64>)> = None;
     let mut whole = 0;
     for _ in 0..TRIES {
-        let (density, found) = posterior.draw_prior(&mut rng)?;
-        if found.line.len() < posterior.dimension() {
+        let Some((density, line)) = drawn(posterior, &mut rng)? else {
             continue;
-        }
+        };
         let log = density.log_likelihood;
         if best.as_ref().is_none_or(|(most, _)| log > *most) {
-            best = Some((log, found.line));
+            best = Some((log, line));
         }
         whole += 1;
         if whole == DRAWN {

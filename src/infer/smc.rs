@@ -21,6 +21,7 @@ use rayon::prelude::*;
 use super::memory::Memory;
 use super::mh::value;
 use super::mixture::Mixture;
+use super::start::drawn;
 use super::{Backend, Effort, Evidence, Inference, Progress, draws_of};
 use crate::draws::Draws;
 use crate::error::{Error, Result};
@@ -117,8 +118,8 @@ impl Base {
             Self::Mixture(mixture) if rng.random::<f64>() >= PRIOR_SHARE => {
                 self.particle(posterior, mixture.draw(rng))
             }
-            _ => match draw_prior(posterior, rng)? {
-                Some(z) => self.particle(posterior, z),
+            _ => match drawn(posterior, rng)? {
+                Some((_, z)) => self.particle(posterior, z),
                 None => Ok(Particle::without_density(posterior.dimension())),
             },
         }
@@ -130,22 +131,19 @@ impl Base {
         z: Vec<f64>,
     ) -> Result<Particle> {
         let density = posterior.density(Point::Line(&z))?;
-        let base = self.log_density(&z, &density);
-        let target = value(&density, density.on_line());
-        Ok(Particle { z, base, target })
+        Ok(self.weighed(z, &density))
+    }
+
+    /// A place whose density is known.
+    pub(super) fn weighed(&self, z: Vec<f64>, density: &Density) -> Particle {
+        let base = self.log_density(&z, density);
+        Particle { z, base, target: log_target(density) }
     }
 }
 
-/// A draw from the prior on the real line; `None` where the model rejects it
-/// before all its parameters are known.
-fn draw_prior(
-    posterior: &Posterior<'_>,
-    rng: &mut Rng,
-) -> Result<Option<Vec<f64>>> {
-    let (_, found) = posterior.draw_prior(rng)?;
-    let complete = found.line.len() == posterior.dimension();
-    let whole = complete && found.line.iter().all(|z| z.is_finite());
-    Ok(whole.then_some(found.line))
+/// ln of the posterior's density on the line, up to its constant.
+pub(super) fn log_target(density: &Density) -> f64 {
+    value(density, density.on_line())
 }
 
 /// A place with its log densities under base and posterior.
@@ -158,7 +156,7 @@ pub(super) struct Particle {
 
 impl Particle {
     /// Somewhere, with no weight: what a draw counts as that is cut short. To
-    /// draw again instead would raise the evidence by the share of such draws.
+    /// draw again instead would divide the evidence by the share of whole ones.
     fn without_density(dimension: usize) -> Self {
         let (base, target) = (0.0, f64::NEG_INFINITY);
         Self { z: vec![0.0; dimension], base, target }

@@ -9,7 +9,7 @@ use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
 use crate::error::{Error, Result};
-use crate::model::{Point, Posterior};
+use crate::model::{Density, Point, Posterior};
 use crate::seed::{Rng, Seed};
 
 /// How many draws from the prior compete for a chain's start.
@@ -49,6 +49,19 @@ pub(super) fn best_start(
         )
     })?;
     Ok(start)
+}
+
+/// A draw from the prior with its place on the line; `None` where the model
+/// rejects it before all its parameters are known, as one of several events
+/// may.
+pub(super) fn drawn(
+    posterior: &Posterior<'_>,
+    rng: &mut Rng,
+) -> Result<Option<(Density, Vec<f64>)>> {
+    let (density, found) = posterior.draw_prior(rng)?;
+    let complete = found.line.len() == posterior.dimension();
+    let whole = complete && found.line.iter().all(|z| z.is_finite());
+    Ok(whole.then_some((density, found.line)))
 }
 
 /// From how many good places each start is chosen.

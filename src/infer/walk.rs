@@ -27,8 +27,6 @@ const DOWN: f64 = 7.0;
 const STRIDES: usize = 12;
 /// How much above the normal approximation, in ln, a place becomes a part.
 const ABOVE: f64 = 0.4;
-/// Steps of a climb at each stride, which begins nearby.
-const FEW: usize = 8;
 
 /// The parts met on walks from the highest of some peaks, along every
 /// coordinate both ways.
@@ -83,8 +81,7 @@ impl<'a> Walk<'a> {
         let mut parts = Vec::new();
         for count in 1..=STRIDES {
             let start = &at + &stride;
-            let held = held.clone();
-            let found = climb_holding(posterior, start.as_slice(), held, FEW)?;
+            let found = climb_holding(posterior, start.as_slice(), &held)?;
             let Some(found) =
                 found.filter(|f| f.height > self.peak.height - DOWN)
             else {
@@ -93,7 +90,6 @@ impl<'a> Walk<'a> {
             let widths = count as f64 * STRIDE;
             let normal = self.peak.height - 0.5 * widths * widths;
             if found.height > normal + ABOVE {
-                let held = self.along..self.along + 1;
                 parts.extend(Part::of_place(&found, &held, &apart));
             }
             stride = &found.line - &at;

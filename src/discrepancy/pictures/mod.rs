@@ -7,8 +7,8 @@ mod track;
 
 pub(super) use bars::bars;
 pub(super) use force::forces;
-pub(super) use recording::recording;
-pub(super) use track::track;
+use recording::recording;
+use track::track;
 
 use super::{Diagnosis, Mismatch, Pictured};
 use crate::physics::forces::Axis;
@@ -28,12 +28,20 @@ pub(super) struct Figure {
     pub(super) svg: String,
 }
 
+/// The track and the recording of an event, which is the i-th.
+pub(super) fn of_event(
+    d: &Diagnosis,
+    p: &Pictured,
+    i: usize,
+) -> [Option<Figure>; 2] {
+    let name = |what: &str| format!("{what}-{i}");
+    [track(d, p, &name("track")), recording(d, p, &name("recording"))]
+}
+
 /// All pictures of a diagnosis.
 pub(super) fn figures(d: &Diagnosis) -> Vec<Figure> {
-    let each = d.pictured.iter().enumerate().flat_map(|(i, p)| {
-        let name = |what: &str| format!("{what}-{i}");
-        [track(d, p, &name("track")), recording(d, p, &name("recording"))]
-    });
+    let events = d.pictured.iter().enumerate();
+    let each = events.flat_map(|(i, p)| of_event(d, p, i));
     each.chain([forces(d), bars(d)]).flatten().collect()
 }
 
