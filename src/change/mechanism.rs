@@ -169,6 +169,26 @@ pub trait Mechanism:
     + ChangeOf<Grad<4>>
     + ChangeOf<Grad<8>>
 {
+    /// What of it concerns one of several events.
+    fn of_event(&self, _event: usize) -> Concern {
+        Concern::All
+    }
+}
+
+/// What of a mechanism concerns one of several events.
+#[derive(Debug)]
+pub enum Concern {
+    /// All of it, which is the same for every event.
+    All,
+    /// Its first unknowns, so many of them, which all events have in common,
+    /// and that event's own, which follow event by event.
+    Own {
+        /// How many are in common.
+        common: usize,
+        /// The mechanism with just those and the event's own; `None` where
+        /// the event has nothing of it.
+        mechanism: Option<Box<dyn Mechanism>>,
+    },
 }
 
 impl<M: Missing> Mechanism for M {}

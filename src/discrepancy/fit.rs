@@ -2,6 +2,7 @@
 
 use rand::RngExt;
 
+use super::apart::explore;
 use crate::change::{Mechanism, Unknown};
 use crate::draws::Draws;
 use crate::error::{Error, Result};
@@ -52,7 +53,10 @@ pub fn fit<P: Program>(
 ) -> Result<Fit> {
     let with = With::new(program, mechanisms);
     let posterior = Posterior::new(&with)?;
-    let found = backend.explore(&posterior, seed, &Quiet)?;
+    let found = match program.events() {
+        1 => backend.explore(&posterior, seed, &Quiet)?,
+        _ => explore(program, mechanisms, &posterior, backend, seed)?,
+    };
     let (Some(draws), Some(evidence)) = (found.draws, found.evidence) else {
         return Err(Error::inference("a fit without draws or evidence"));
     };

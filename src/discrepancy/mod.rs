@@ -3,6 +3,7 @@
 
 pub mod mechanisms;
 
+mod apart;
 mod attribute;
 mod before_and_after;
 mod check;

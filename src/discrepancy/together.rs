@@ -7,12 +7,14 @@
 //! which event's body runs, so that of a change with a part for each event
 //! each sees its own, and fits know nothing of it.
 
+use std::sync::Arc;
+
 use crate::block::List;
 use crate::change::{
-    Candidate, Change, ChangeKind, ChangeOf, Family, Mechanism, Noun, Reach,
-    Unknown,
+    Candidate, Change, ChangeKind, ChangeOf, Concern, Family, Mechanism, Noun,
+    Reach, Unknown,
 };
-use crate::error::{Error, Outcome, Result};
+use crate::error::{Error, Outcome, Result, Stop};
 use crate::model::{Assembled, Number, Program, Run};
 use crate::observe::Extent;
 use crate::physics::forces::Axis;
@@ -98,6 +100,33 @@ impl Together {
             .collect()
     }
 
+    /// The event whose laws all share, where they do.
+    fn first_shared(&self) -> Option<&Assembled> {
+        self.events.first().filter(|_| self.shared_friction)
+    }
+
+    /// The parameters of the laws that all share, where they do.
+    fn shared_laws<K: Number>(
+        &self,
+        run: &mut Run<'_, K>,
+    ) -> std::result::Result<Option<List<Real<K>>>, Stop> {
+        self.first_shared().map(|first| first.ask_laws(run)).transpose()
+    }
+
+    /// Runs one event under what is changed of it.
+    fn run_one<K: Number>(
+        &self,
+        index: usize,
+        shared: Option<&[Real<K>]>,
+        run: &mut Run<'_, K>,
+    ) -> Outcome {
+        let event = &self.events[index];
+        run.of_event(index, |run| match shared {
+            Some(laws) => event.score(run, laws),
+            None => event.run(run),
+        })
+    }
+
     /// Whether any event's model has the mechanism already.
     fn has(&self, mechanism: &dyn Mechanism) -> bool {
         self.events.iter().any(|event| is_held(mechanism, &event.blocks()))
@@ -132,17 +161,32 @@ impl Together {
 
 impl Program for Together {
     fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
-        let shared = match self.events.first() {
-            Some(first) if self.shared_friction => Some(first.ask_laws(run)?),
-            _ => None,
-        };
-        for (i, event) in self.events.iter().enumerate() {
-            run.of_event(i, |run| match &shared {
-                Some(laws) => event.score(run, laws),
-                None => event.run(run),
-            })?;
+        let shared = self.shared_laws(run)?;
+        for i in 0..self.events.len() {
+            self.run_one(i, shared.as_deref(), run)?;
         }
         Ok(())
+    }
+
+    fn events(&self) -> usize {
+        self.events.len()
+    }
+
+    fn common(&self) -> usize {
+        self.first_shared().map_or(0, Assembled::friction_dimension)
+    }
+
+    fn run_common<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
+        self.shared_laws(run).map(|_| ())
+    }
+
+    fn run_event<K: Number>(
+        &self,
+        event: usize,
+        run: &mut Run<'_, K>,
+    ) -> Outcome {
+        let shared = self.shared_laws(run)?;
+        self.run_one(event, shared.as_deref(), run)
     }
 }
 
@@ -199,11 +243,11 @@ fn labels<'n>(names: impl Iterator<Item = &'n str>) -> Vec<String> {
 }
 
 /// An event's own mechanism.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Own {
     /// Which event.
     event: usize,
-    mechanism: Box<dyn Mechanism>,
+    mechanism: Arc<dyn Mechanism>,
     /// How much is unknown about it.
     count: usize,
 }
@@ -229,7 +273,8 @@ impl PerEvent {
             let Some(mechanism) = mechanism else { continue };
             let label = labels.get(event).map_or("", String::as_str);
             let added = mechanism.unknowns();
-            own.push(Own { event, mechanism, count: added.len() });
+            let (mechanism, count) = (Arc::from(mechanism), added.len());
+            own.push(Own { event, mechanism, count });
             unknowns.extend(added.iter().map(|one| of_event(one, label)));
         }
         (!own.is_empty()).then_some(Self { each: own, events, unknowns })
@@ -304,7 +349,24 @@ impl<K: ChangeKind> ChangeOf<K> for PerEvent {
     }
 }
 
-impl Mechanism for PerEvent {}
+impl Mechanism for PerEvent {
+    fn of_event(&self, event: usize) -> Concern {
+        let mut begin = 0;
+        let mut mechanism: Option<Box<dyn Mechanism>> = None;
+        for own in &self.each {
+            let unknowns = &self.unknowns[begin..begin + own.count];
+            begin += own.count;
+            if own.event == event {
+                mechanism = Some(Box::new(Self {
+                    each: vec![own.clone()],
+                    events: self.events,
+                    unknowns: unknowns.to_vec(),
+                }));
+            }
+        }
+        Concern::Own { common: 0, mechanism }
+    }
+}
 
 /// A mechanism at the same places in all events, with amplitudes that differ
 /// about a common one.
@@ -314,9 +376,12 @@ impl Mechanism for PerEvent {}
 /// exp(spread times deviate), which keeps its sign.
 #[derive(Debug)]
 pub struct Pooled {
-    inner: Box<dyn Mechanism>,
+    inner: Arc<dyn Mechanism>,
     unknowns: Vec<Unknown>,
-    events: usize,
+    /// How many of these all events have in common.
+    common: usize,
+    /// Which event the first deviate is of; the others follow.
+    first: usize,
     signed: bool,
 }
 
@@ -333,12 +398,14 @@ impl Pooled {
         };
         let spread = AnyPrior::HalfNormal(scale);
         unknowns.push(Unknown { name: "spread".into(), unit, prior: spread });
+        let common = unknowns.len();
         unknowns.extend(labels.iter().map(|label| {
             let prior = AnyPrior::Normal(0.0, 1.0);
             let name = "deviation".into();
             of_event(&Unknown { name, unit: "1", prior }, label)
         }));
-        Self { inner, unknowns, events: labels.len(), signed }
+        let inner = Arc::from(inner);
+        Self { inner, unknowns, common, first: 0, signed }
     }
 
     fn inner(&self) -> &dyn Mechanism {
@@ -365,16 +432,32 @@ impl Candidate for Pooled {
 
 impl<K: ChangeKind> ChangeOf<K> for Pooled {
     fn change_of(&self, values: &[Real<K>]) -> Change<K> {
-        let own = self.unknowns.len() - self.events - 1;
-        let (common, deviates) = values.split_at(own);
-        let mut amounts: List<Real<K>> = common.iter().copied().collect();
-        let changes = deviates[1..].iter().map(|&deviate| {
-            amounts[0] = self.amplitude(common[0], deviates[0], deviate);
+        let (common, deviates) = values.split_at(self.common);
+        let (mut amounts, spread): (List<Real<K>>, _) = match common {
+            [amounts @ .., spread] => (amounts.iter().copied().collect(), *spread),
+            [] => return Change::default(),
+        };
+        let mut own = vec![Change::default(); self.first];
+        own.extend(deviates.iter().map(|&deviate| {
+            amounts[0] = self.amplitude(common[0], spread, deviate);
             K::change(self.inner.as_ref(), &amounts)
-        });
-        let own = changes.collect();
+        }));
         Change { own, ..Change::default() }
     }
 }
 
-impl Mechanism for Pooled {}
+impl Mechanism for Pooled {
+    fn of_event(&self, event: usize) -> Concern {
+        let of_common = self.unknowns[..self.common].iter();
+        let own = &self.unknowns[self.common + event];
+        let mechanism = Self {
+            inner: Arc::clone(&self.inner),
+            unknowns: of_common.chain([own]).cloned().collect(),
+            common: self.common,
+            first: event,
+            signed: self.signed,
+        };
+        let mechanism = Some(Box::new(mechanism) as Box<dyn Mechanism>);
+        Concern::Own { common: self.common, mechanism }
+    }
+}

@@ -5,8 +5,6 @@
 //! first derivatives. It needs a dozen steps where a quasi-Newton method
 //! needs a hundred, because a recording is nearly a least-squares problem.
 
-use std::ops::Range;
-
 use nalgebra::{DMatrix, DVector};
 
 use crate::error::Result;
@@ -59,7 +57,7 @@ pub fn climb(
     posterior: &Posterior<'_>,
     start: &[f64],
 ) -> Result<Option<Peak>> {
-    ascend(posterior, start, &(0..0), STEPS)
+    ascend(posterior, start, &[], STEPS)
 }
 
 /// The same within the places that share some coordinates with the start, near
@@ -67,7 +65,7 @@ pub fn climb(
 pub(super) fn climb_holding(
     posterior: &Posterior<'_>,
     start: &[f64],
-    held: &Range<usize>,
+    held: &[usize],
 ) -> Result<Option<Peak>> {
     ascend(posterior, start, held, FEW)
 }
@@ -76,7 +74,7 @@ pub(super) fn climb_holding(
 fn ascend(
     posterior: &Posterior<'_>,
     start: &[f64],
-    held: &Range<usize>,
+    held: &[usize],
     steps: usize,
 ) -> Result<Option<Peak>> {
     let mut line = DVector::from_column_slice(start);
@@ -118,7 +116,7 @@ fn step(
     posterior: &Posterior<'_>,
     line: &DVector<f64>,
     about: &Information,
-    held: &Range<usize>,
+    held: &[usize],
     lambda: &mut f64,
 ) -> Result<Option<DVector<f64>>> {
     let height = about.density.on_line();
@@ -128,7 +126,7 @@ fn step(
             damped[(i, i)] += *lambda * damped[(i, i)] + 1e-6;
         }
         let mut gradient = about.gradient.clone();
-        for i in held.clone() {
+        for &i in held {
             damped.row_mut(i).fill(0.0);
             damped.column_mut(i).fill(0.0);
             (damped[(i, i)], gradient[i]) = (1.0, 0.0);

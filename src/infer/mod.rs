@@ -7,6 +7,7 @@
 
 mod bridge;
 mod descent;
+mod groups;
 mod importance;
 mod legendre;
 mod map;
@@ -27,6 +28,7 @@ mod walk;
 
 pub use bridge::Bridge;
 pub use descent::{Peak, climb};
+pub use groups::{Group, Grouped};
 pub use importance::ImportanceSampling;
 pub use map::{Map, Mode};
 pub use mh::{MetropolisHastings, Proposal};

@@ -1,7 +1,5 @@
 //! Normal approximations of parts of a posterior, of which mixtures are made.
 
-use std::ops::Range;
-
 use nalgebra::{DMatrix, DVector};
 
 use super::descent::Peak;
@@ -26,6 +24,12 @@ impl Part {
         })
     }
 
+    /// The same of some of the coordinates.
+    pub(super) fn marginal(&self, of: &[usize]) -> Self {
+        let covariance = self.covariance.select_rows(of).select_columns(of);
+        Self { log: self.log, mean: self.mean.select_rows(of), covariance }
+    }
+
     /// About a peak; `None` where it has no width.
     pub(super) fn of_peak(peak: &Peak) -> Option<Self> {
         Self::new(peak, peak.precision.clone())
@@ -35,18 +39,17 @@ impl Part {
     /// ones are far along these, the others following as the precision tells.
     pub(super) fn of_place(
         peak: &Peak,
-        held: &Range<usize>,
+        held: &[usize],
         apart: &[f64],
     ) -> Option<Self> {
         let n = peak.line.len();
         let free: Vec<usize> = (0..n).filter(|i| !held.contains(i)).collect();
-        let kept: Vec<usize> = held.clone().collect();
         let mut joint = peak.precision.clone();
         let inner = joint.select_rows(&free).select_columns(&free);
-        let across = joint.select_rows(&free).select_columns(&kept);
+        let across = joint.select_rows(&free).select_columns(held);
         let follows = across.tr_mul(&inner.cholesky()?.solve(&across));
-        for (i, &row) in kept.iter().enumerate() {
-            for (j, &column) in kept.iter().enumerate() {
+        for (i, &row) in held.iter().enumerate() {
+            for (j, &column) in held.iter().enumerate() {
                 joint[(row, column)] = follows[(i, j)];
             }
             joint[(row, row)] += 1.0 / apart[i].powi(2);

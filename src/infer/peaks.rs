@@ -13,8 +13,6 @@
 //! corrects it; and where its weights stay poor, tempering from the mixture
 //! does the rest.
 
-use std::ops::Range;
-
 use rayon::prelude::*;
 
 use super::descent::{Peak, climb, climb_holding};
@@ -54,7 +52,7 @@ impl Default for Peaks {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ridge {
     /// Which coordinates.
-    pub held: Range<usize>,
+    pub held: Vec<usize>,
     /// The places, on the real line in all coordinates, with how far the next
     /// ones lie along the held ones.
     pub places: Vec<(Vec<f64>, Vec<f64>)>,
@@ -68,11 +66,11 @@ const ONE: f64 = 1.0;
 /// An effective share that is enough with a Pareto tail index below 0.7, and
 /// one that is enough with an index below 1. Either passes where a tail is
 /// missed that no draw reaches, which it is for the walks to prevent.
-const ENOUGH: f64 = 0.1;
+pub(super) const ENOUGH: f64 = 0.1;
 const AMPLE: f64 = 0.25;
 /// Rounds of importance sampling before tempering takes over: from which on
 /// they fit components to the draws, and from which on they mend.
-const ROUNDS: u64 = 6;
+pub(super) const ROUNDS: u64 = 6;
 const WEIGHED: u64 = 2;
 const FITTED: u64 = 4;
 /// The most components that a round adds.
@@ -88,7 +86,7 @@ const TRIES: usize = 200;
 
 /// The best that a place of a ridge allows: where, which coordinates were
 /// held, and how far the next places lie along them.
-type Along<'r> = (Peak, &'r Range<usize>, &'r [f64]);
+type Along<'r> = (Peak, &'r [usize], &'r [f64]);
 
 impl Backend for Peaks {
     fn name(&self) -> &'static str {
@@ -102,28 +100,46 @@ impl Backend for Peaks {
         progress: &dyn Progress,
     ) -> Result<Inference> {
         posterior.require_proper("the mixture of peaks")?;
-        let mut mixture = mixture(self.parts(posterior, seed.child(0))?)?;
         progress.begin("importance sampling", None);
+        let (mixture, found) = self.settled(posterior, ENOUGH, seed)?;
+        progress.advance(self.draws as u64);
+        match found {
+            Some((found, seed)) => {
+                ImportanceSampling::conclude(posterior, &found, seed)
+            }
+            None => {
+                self.tempered(posterior, mixture, seed.child(100), progress)
+            }
+        }
+    }
+}
+
+impl Peaks {
+    /// A mixture with draws from it whose weights are good, an effective share
+    /// above `enough` among what makes them so, and a seed for what follows;
+    /// without draws where no such mixture was found.
+    pub(super) fn settled(
+        &self,
+        posterior: &Posterior<'_>,
+        enough: f64,
+        seed: Seed,
+    ) -> Result<(Mixture, Option<(Vec<Particle>, Seed)>)> {
+        let all: Vec<usize> = (0..posterior.dimension()).collect();
+        let parts = self.parts(posterior, &all, seed.child(0))?;
+        let mut mixture = mixture(&parts)?;
         for round in 0..ROUNDS {
             let seed = seed.child(1 + round);
             let base = Base::Mixture(mixture.clone());
             let found =
                 population(posterior, &base, self.draws, seed.child(0))?;
-            progress.advance(found.len() as u64);
-            if is_good(&found) {
-                return ImportanceSampling::conclude(
-                    posterior,
-                    &found,
-                    seed.child(1),
-                );
+            if is_good(&found, enough) {
+                return Ok((mixture, Some((found, seed.child(1)))));
             }
             mixture = taught(&mixture, &found, round, seed.child(2));
         }
-        self.tempered(posterior, mixture, seed.child(100), progress)
+        Ok((mixture, None))
     }
-}
 
-impl Peaks {
     /// About the log evidence, from the normal approximations of the peaks
     /// alone.
     ///
@@ -167,10 +183,12 @@ impl Peaks {
         Ok(if sampled.warnings.is_empty() { sampled } else { led })
     }
 
-    /// The parts of all peaks and ridges.
-    fn parts(
+    /// The parts of all peaks and ridges that hold anything, most first, those
+    /// of walks along given coordinates among them.
+    pub(super) fn parts(
         &self,
         posterior: &Posterior<'_>,
+        along: &[usize],
         seed: Seed,
     ) -> Result<Vec<Part>> {
         let ridges = self.along_ridges(posterior)?;
@@ -179,8 +197,13 @@ impl Peaks {
         let of_ridges = ridges.iter().filter_map(|(peak, held, apart)| {
             Part::of_place(peak, held, apart)
         });
-        let of_walks = walks(posterior, &peaks)?;
-        Ok(of_peaks.chain(of_ridges).chain(of_walks).collect())
+        let of_walks = walks(posterior, &peaks, along)?;
+        let all = of_peaks.chain(of_ridges).chain(of_walks);
+        let mut parts: Vec<Part> = all.collect();
+        parts.sort_by(|a, b| b.log.total_cmp(&a.log));
+        let best = parts.first().map_or(0.0, |part| part.log);
+        parts.retain(|part| best - part.log < LEAST);
+        Ok(parts)
     }
 
     /// The peaks that all starts lead to, and the best places of ridges.
@@ -226,7 +249,7 @@ impl Peaks {
             .ridges
             .iter()
             .flat_map(|Ridge { held, places }| {
-                places.iter().map(move |(start, apart)| (held, start, apart))
+                places.iter().map(|(start, apart)| (&held[..], start, apart))
             })
             .collect();
         let found = places
@@ -264,15 +287,13 @@ fn likely(posterior: &Posterior<'_>, seed: Seed) -> Result<Option<Vec<f64>>> {
 
 /// The mixture of the parts, each weighing about what it holds: the square
 /// root keeps those in whose approximation is poor.
-fn mixture(mut parts: Vec<Part>) -> Result<Mixture> {
-    parts.sort_by(|a, b| b.log.total_cmp(&a.log));
+pub(super) fn mixture(parts: &[Part]) -> Result<Mixture> {
     let best = parts.first().map_or(0.0, |part| part.log);
-    let kept =
-        parts.into_iter().filter(|part| best - part.log < LEAST).map(|part| {
-            let weight = (0.5 * (part.log - best)).exp();
-            (weight, part.mean, part.covariance)
-        });
-    Mixture::of(kept).ok_or_else(|| {
+    let weighted = parts.iter().map(|part| {
+        let weight = (0.5 * (part.log - best)).exp();
+        (weight, part.mean.clone(), part.covariance.clone())
+    });
+    Mixture::of(weighted).ok_or_else(|| {
         Error::inference(
             "no start leads to a peak: prior and recording contradict each \
              other",
@@ -283,7 +304,7 @@ fn mixture(mut parts: Vec<Part>) -> Result<Mixture> {
 /// What a round of draws teaches the mixture: in the first how much each
 /// component holds, then which components the heavy draws make, in the last
 /// where it is still far too low.
-fn taught(
+pub(super) fn taught(
     mixture: &Mixture,
     found: &[Particle],
     round: u64,
@@ -309,11 +330,11 @@ fn taught(
     })
 }
 
-fn is_good(found: &[Particle]) -> bool {
+pub(super) fn is_good(found: &[Particle], enough: f64) -> bool {
     let logs: Vec<f64> = found.iter().map(Particle::log_weight).collect();
     let share = effective(&logs, 1.0) / logs.len() as f64;
     let (_, k) = psis(&logs);
-    (share > ENOUGH && k < 0.7) || (share > AMPLE && k < 1.0)
+    (share > enough && k < 0.7) || (share > AMPLE.max(enough) && k < 1.0)
 }
 
 #[cfg(test)]

@@ -171,6 +171,11 @@ impl Particle {
         }
     }
 
+    /// The same with other coordinates, and so much more in ln to its density.
+    pub(super) fn completed(self, z: Vec<f64>, more: f64) -> Self {
+        Self { z, target: self.target + more, ..self }
+    }
+
     /// ln of the posterior's density, up to its constant.
     pub(super) fn log_target(&self) -> f64 {
         self.target

@@ -28,17 +28,19 @@ const STRIDES: usize = 12;
 /// How much above the normal approximation, in ln, a place becomes a part.
 const ABOVE: f64 = 0.4;
 
-/// The parts met on walks from the highest of some peaks, along every
-/// coordinate both ways.
+/// The parts met on walks from the highest of some peaks, along some of the
+/// coordinates both ways.
 ///
 /// # Errors
 /// What no other parameter values would mend.
 pub(super) fn walks(
     posterior: &Posterior<'_>,
     peaks: &[Peak],
+    along: &[usize],
 ) -> Result<Vec<Part>> {
+    let walked = peaks.iter().take(WALKED);
     let walks: Vec<Walk<'_>> =
-        peaks.iter().take(WALKED).flat_map(Walk::all).collect();
+        walked.flat_map(|peak| Walk::all(peak, along)).collect();
     let met = walks
         .into_par_iter()
         .map(|walk| walk.go(posterior))
@@ -57,13 +59,13 @@ struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    /// Those along every coordinate, up and down.
-    fn all(peak: &'a Peak) -> Vec<Self> {
+    /// Those along given coordinates, up and down.
+    fn all(peak: &'a Peak, along: &[usize]) -> Vec<Self> {
         let Some(factor) = peak.precision.clone().cholesky() else {
             return Vec::new();
         };
         let covariance = factor.inverse();
-        let ways = (0..peak.line.len()).flat_map(|i| [(i, 1.0), (i, -1.0)]);
+        let ways = along.iter().flat_map(|&i| [(i, 1.0), (i, -1.0)]);
         ways.map(|(along, sign)| {
             let width = covariance[(along, along)].sqrt();
             let stride = covariance.column(along) * (sign * STRIDE / width);
@@ -75,7 +77,7 @@ impl<'a> Walk<'a> {
     /// Walks as far as the profile stays high, each stride begun in the
     /// direction of the last.
     fn go(self, posterior: &Posterior<'_>) -> Result<Vec<Part>> {
-        let held = self.along..self.along + 1;
+        let held = [self.along];
         let apart = [STRIDE * self.width];
         let (mut at, mut stride) = (self.peak.line.clone(), self.stride);
         let mut parts = Vec::new();

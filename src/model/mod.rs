@@ -6,6 +6,7 @@
 //! same run with another listener. [`Model`] is the object-safe face of a
 //! program; every program has it.
 
+mod alone;
 mod assembled;
 mod information;
 mod listener;
@@ -13,8 +14,10 @@ mod number;
 mod posterior;
 mod program;
 mod run;
+mod slice;
 mod with;
 
+pub use alone::{Alone, Common};
 pub use assembled::Assembled;
 pub use information::Information;
 pub use listener::{Collected, Collector, Declaration, Listener, Replicates};
@@ -22,4 +25,5 @@ pub use number::Number;
 pub use posterior::{Cost, Parameter, Posterior};
 pub use program::{Density, Model, Point, Program, Weights};
 pub use run::{Label, Run};
+pub use slice::Slice;
 pub use with::With;
