@@ -11,7 +11,7 @@ use couloir::discrepancy::{
     Fit, Options, Sharing, Together, Verdict, diagnose, fit,
 };
 use couloir::draws::summarise;
-use couloir::infer::{Peaks, Quiet};
+use couloir::infer::{Backend, Peaks, Quiet, Smc};
 use couloir::model::{Assembled, Point, Posterior, Program, With};
 use couloir::noise::{self, Iid, Noise};
 use couloir::physics::Track;
@@ -173,6 +173,45 @@ fn with_nothing_shared_the_log_evidence_adds_up() {
     let names: Vec<_> =
         posterior.parameters().iter().map(|p| p.name.clone()).collect();
     assert_eq!(names, ["mu", "upper.sigma2", "lower.sigma2"]);
+}
+
+#[test]
+fn what_events_have_in_common_is_integrated_as_all_at_once() {
+    // Tempering knows nothing of events; of the two estimates each has an
+    // error of its own, and four of both together are allowed.
+    let tempering = Smc { particles: 1500, ..Smc::default() };
+    let cases = [
+        ("friction-step", Sharing::Shared, true),
+        ("friction-step", Sharing::Pooled, false),
+        ("heavy-tails", Sharing::Shared, true),
+    ];
+    for (name, sharing, one_law) in cases {
+        let together = Together::new(both().into(), one_law).unwrap();
+        let all = together.catalogue(sharing);
+        let found = all.iter().find(|m| m.name() == name).unwrap();
+        let added = [found.as_ref()];
+        let peaks = Peaks::default();
+        let apart = fit(&together, &added, &peaks, Seed::new(5)).unwrap();
+        let with = With::new(&together, &added);
+        let posterior = Posterior::new(&with).unwrap();
+        let led = tempering.explore(&posterior, Seed::new(6), &Quiet).unwrap();
+        let known = led.evidence.unwrap();
+        let off = (apart.log_evidence - known.log).abs();
+        let error = apart.se.hypot(known.se);
+        let what = format!(
+            "{name}: {} +- {}, {} +- {}",
+            apart.log_evidence, apart.se, known.log, known.se
+        );
+        assert!(off < 4.0 * error && error < 0.2, "{what}");
+        // The draws are of all at once too: four standard errors of a mean of
+        // a hundred draws, for sd that a hundred draws tell to a tenth.
+        let (mine, theirs) =
+            (summarise(&apart.draws), summarise(&led.draws.unwrap()));
+        for (a, b) in mine.iter().zip(&theirs) {
+            let off = (a.mean - b.mean).abs();
+            assert!(off < 0.4 * b.sd, "{what}; {}: {a:?} {b:?}", a.name);
+        }
+    }
 }
 
 /// The width of the 90 % interval of the patch's delta_mu, and its middle.

@@ -8,8 +8,8 @@
 mod mechanism;
 
 pub use mechanism::{
-    Candidate, ChangeKind, ChangeOf, Concern, Family, Mechanism, Missing, Noun,
-    Reach, Unknown,
+    Candidate, ChangeKind, ChangeOf, Concern, Family, Mechanism, Missing,
+    Noun, Reach, Unknown,
 };
 
 use crate::noise::Alteration;

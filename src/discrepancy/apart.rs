@@ -17,6 +17,19 @@ struct Layout {
 }
 
 impl Layout {
+    /// That of mechanisms with a program which has so many in common, and so
+    /// many of each event.
+    fn of(shares: &[Shares<'_>], common: usize, own: &[usize]) -> Self {
+        let events = vec![Vec::new(); own.len()];
+        let mut layout = Self { events, ..Self::default() };
+        for share in shares {
+            let own = (0..own.len()).map(|event| share.count(event));
+            layout.push(share.common, own);
+        }
+        layout.push(common, own.iter().copied());
+        layout
+    }
+
     /// The next coordinates: so many in common, and so many of each event.
     fn push(&mut self, common: usize, own: impl Iterator<Item = usize>) {
         let first = self.next..self.next + common;
@@ -104,32 +117,20 @@ pub(super) fn explore<P: Program>(
         .collect();
     let posteriors: Vec<Posterior<'_>> =
         with.iter().map(|one| Posterior::new(one)).collect::<Result<_>>()?;
-    let mut layout =
-        Layout { events: vec![Vec::new(); events], ..Layout::default() };
-    for share in &shares {
-        layout.push(share.common, (0..events).map(|i| share.count(i)));
-    }
-    let of_program = |(one, with): (&Posterior<'_>, &With<'_, _>)| {
+    let own = |(one, with): (&Posterior<'_>, &With<'_, _>)| {
         one.dimension() - with.added() - program.common()
     };
-    let counts = posteriors.iter().zip(&with).map(of_program);
-    layout.push(program.common(), counts);
+    let own: Vec<usize> = posteriors.iter().zip(&with).map(own).collect();
+    let layout = Layout::of(&shares, program.common(), &own);
     let added = shares.iter().flat_map(Shares::added).collect();
     let of_common = Common::new(program, added);
     let common = match layout.common.is_empty() {
         true => None,
         false => Some(Posterior::new(&of_common)?),
     };
-    let groups = posteriors.iter().zip(layout.events);
-    let grouped = Grouped {
-        whole,
-        common: common.as_ref().map(|posterior| Group {
-            posterior,
-            places: layout.common,
-        }),
-        groups: groups
-            .map(|(posterior, places)| Group { posterior, places })
-            .collect(),
-    };
+    let group = |(posterior, places)| Group { posterior, places };
+    let common = common.as_ref().map(|one| group((one, layout.common)));
+    let groups = posteriors.iter().zip(layout.events).map(group).collect();
+    let grouped = Grouped { whole, common, groups };
     backend.explore_groups(&grouped, seed, &Quiet)
 }

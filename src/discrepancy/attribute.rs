@@ -98,8 +98,7 @@ fn ridge(
     let signed =
         leading.len() > 1 && matches!(leading[0].prior, AnyPrior::Normal(..));
     let free = usize::from(signed);
-    let held =
-        (before.len() + free..before.len() + leading.len()).collect();
+    let held = (before.len() + free..before.len() + leading.len()).collect();
     let kept = &leading[free..];
     let (amplitude, others) = (vec![0.0; free], vec![0.0; others.len()]);
     let places = spread(kept, places(kept.len()), seed)

@@ -434,7 +434,9 @@ impl<K: ChangeKind> ChangeOf<K> for Pooled {
     fn change_of(&self, values: &[Real<K>]) -> Change<K> {
         let (common, deviates) = values.split_at(self.common);
         let (mut amounts, spread): (List<Real<K>>, _) = match common {
-            [amounts @ .., spread] => (amounts.iter().copied().collect(), *spread),
+            [amounts @ .., spread] => {
+                (amounts.iter().copied().collect(), *spread)
+            }
             [] => return Change::default(),
         };
         let mut own = vec![Change::default(); self.first];

@@ -56,7 +56,7 @@ pub struct Grouped<'a> {
 
 /// The share of the draws of a round that are made of what is in common: each
 /// costs a climb and [`INNER`] draws in every group.
-const OUTER: usize = 4;
+const OUTER: usize = 2;
 /// How many draws estimate what a group holds at given common coordinates.
 const INNER: usize = 40;
 /// At how many places of the common coordinates the groups are looked at
@@ -146,7 +146,8 @@ impl Peaks {
             let place = |held| group.places.iter().position(|p| p == held);
             let held = ridge.held.iter().map(place).collect::<Option<_>>()?;
             let places = ridge.places.iter();
-            let places = places.map(|(at, apart)| (crossing(at), apart.clone()));
+            let places =
+                places.map(|(at, apart)| (crossing(at), apart.clone()));
             Some(Ridge { held, places: places.collect() })
         });
         Self { from, ridges: ridges.collect(), ..self.clone() }
@@ -160,7 +161,8 @@ impl Peaks {
         seed: Seed,
         progress: &dyn Progress,
     ) -> Result<Inference> {
-        let parts = self.parts(grouped.whole, &common.places, seed.child(0))?;
+        let parts =
+            self.parts(grouped.whole, &common.places, seed.child(0))?;
         let marginals: Vec<Part> =
             parts.iter().map(|part| part.marginal(&common.places)).collect();
         let mut mixture = mixture(&marginals)?;
@@ -187,7 +189,6 @@ impl Peaks {
                 .into_iter()
                 .unzip();
             progress.advance(count as u64);
-            if std::env::var("DBG").is_ok() { let l: Vec<f64> = found.iter().map(Particle::log_weight).collect(); eprintln!("round {round}: eff {:.3} k {:.2} lnZ {:.2}", super::smc::effective(&l,1.0)/l.len() as f64, crate::draws::psis(&l).1, log_sum_exp(l.iter().copied())-(l.len() as f64).ln()); }
             if round == ROUNDS || is_good(&found, ENOUGH) {
                 let (whole, seed) = (grouped.whole, seed.child(2));
                 return ImportanceSampling::conclude(whole, &wholes, seed);
@@ -364,14 +365,12 @@ impl<'a> Inner<'a> {
         for _ in 0..INNER {
             let own = proposal.draw(rng);
             self.own.iter().zip(&own).for_each(|(&i, z)| at[i] = *z);
-            let density =
-                self.group.posterior.density(Point::Line(&at))?;
+            let density = self.group.posterior.density(Point::Line(&at))?;
             let target = log_target(&density) - prior;
             logs.push(target - proposal.log_density(&own));
             draws.push(own);
         }
         let total = log_sum_exp(logs.iter().copied());
-        if std::env::var("DBG").is_ok() { let e: f64 = logs.iter().map(|l| (2.0*(l-total)).exp()).sum(); if rng.random::<f64>() < 0.01 { eprintln!("inner {} eff {:.2}", self.group.posterior.parameters().last().unwrap().name, 1.0/e/INNER as f64); } }
         let mut left = rng.random::<f64>();
         let chosen = logs.iter().position(|log| {
             left -= (log - total).exp();
@@ -410,7 +409,8 @@ impl Proposal<'_> {
     fn log_density(&self, z: &[f64]) -> f64 {
         let normal = self.normal.as_ref().map(|m| m.log_density(z));
         let carried = self.carried.as_ref().map(|(mixture, by)| {
-            let back: Vec<f64> = z.iter().zip(by).map(|(z, b)| z - b).collect();
+            let back: Vec<f64> =
+                z.iter().zip(by).map(|(z, b)| z - b).collect();
             mixture.log_density(&back)
         });
         let both = normal.into_iter().chain(carried);

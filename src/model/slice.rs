@@ -83,8 +83,11 @@ impl Model for Slice<'_> {
         listener: Option<&mut dyn Listener<Plain>>,
     ) -> Result<Density> {
         let unknown = &self.unknown;
-        let mut heard = listener
-            .map(|listener| Unknown { listener, unknown, declared: 0 });
+        let mut heard = listener.map(|listener| Unknown {
+            listener,
+            unknown,
+            declared: 0,
+        });
         let heard = heard.as_mut().map(|l| l as &mut dyn Listener<Plain>);
         match point {
             Point::Line(z) => {
