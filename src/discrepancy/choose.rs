@@ -9,6 +9,7 @@ use super::attribute::{Attribution, Known, extend, pair};
 use super::before_and_after::rows_of;
 use super::diagnosis::{Judged, Rival, Verdict};
 use super::fit::Fit;
+use super::judge::{Beforehand, Odds};
 use crate::change::{Family, Mechanism, Reach};
 use crate::draws::median;
 use crate::error::Result;
@@ -45,6 +46,7 @@ pub(super) struct Choice<'a, P> {
     pub(super) found: &'a Attribution,
     /// Their names, most probable first.
     pub(super) judged: &'a [Judged],
+    pub(super) odds: &'a Odds,
     pub(super) seed: Seed,
 }
 
@@ -59,14 +61,14 @@ impl<P: Program> Choice<'_, P> {
         let Some(&first) = best.first() else { return Ok(None) };
         let fit = self.found.candidates[first].clone();
         let single = Chosen::new(vec![first], fit);
-        let pairs = self.best_pair(&best, &single.fit)?;
+        let pairs = self.best_pair(&best, &single)?;
         let two = match pairs.nested {
-            Some(two) if self.rises(&two.fit, &single.fit) => two,
+            Some(two) if self.rises(&two, &single) => two,
             _ => return Ok(Some(self.rivalled(single, pairs.other))),
         };
         let two = self.rivalled(two, pairs.other);
         let found = match self.best_third(&best, &two)? {
-            Some(three) if self.rises(&three.fit, &two.fit) => three,
+            Some(three) if self.rises(&three, &two) => three,
             _ => two,
         };
         self.exchanged(found).map(Some)
@@ -123,21 +125,35 @@ impl<P: Program> Choice<'_, P> {
         Ok(fit.map(|fit| Chosen::new(which, fit)))
     }
 
-    /// ln of the evidence that one more term must bring a model to. Half of the
-    /// prior is shared evenly by so many names, so that a second mechanism is
-    /// beforehand as unlikely as the first was: the evidence has to pay for it.
-    fn hurdle(&self, fit: &Fit) -> f64 {
-        let names = self.judged.iter().filter(|m| m.name != "none").count();
-        fit.log_evidence + RISE * LN_10 + (names as f64).ln()
+    /// ln of the evidence that these mechanisms must reach to be taken instead
+    /// of the chosen. A second one is beforehand as unlikely as the first was:
+    /// the evidence has to pay for it.
+    fn hurdle(&self, which: &[usize], chosen: &Chosen) -> f64 {
+        let further = self.price(which) - self.price(&chosen.which);
+        chosen.fit.log_evidence + RISE * LN_10 + further
     }
 
-    fn rises(&self, more: &Fit, less: &Fit) -> bool {
-        more.log_evidence > self.hurdle(less)
+    /// In ln, how much less likely beforehand these are than none of them.
+    fn price(&self, which: &[usize]) -> f64 {
+        let beforehand = Beforehand::of(self.judged, self.odds);
+        let names = which.iter().map(|&i| self.all[i].name());
+        names.map(|name| beforehand.price(name)).sum()
+    }
+
+    /// Of those that were worth a fit the most probable.
+    fn best(&self, fits: Vec<Option<Chosen>>) -> Option<Chosen> {
+        let worth = |c: &Chosen| c.fit.log_evidence - self.price(&c.which);
+        let fits = fits.into_iter().flatten();
+        fits.max_by(|a, b| worth(a).total_cmp(&worth(b)))
+    }
+
+    fn rises(&self, more: &Chosen, less: &Chosen) -> bool {
+        more.fit.log_evidence > self.hurdle(&more.which, less)
     }
 
     /// The chosen, warned of where a pair of others reaches further.
     fn rivalled(&self, mut chosen: Chosen, rival: Option<Chosen>) -> Chosen {
-        let reaches = |r: &Chosen| self.rises(&r.fit, &chosen.fit);
+        let reaches = |r: &Chosen| self.rises(r, &chosen);
         if let Some(rival) = rival.filter(reaches) {
             let mechanisms = rival.mechanisms(self.all);
             let names: Vec<_> = mechanisms.iter().map(|m| m.name()).collect();
@@ -179,18 +195,18 @@ impl<P: Program> Choice<'_, P> {
             .collect()
     }
 
-    fn best_pair(&self, best: &[usize], single: &Fit) -> Result<Pairs> {
+    fn best_pair(&self, best: &[usize], single: &Chosen) -> Result<Pairs> {
         let all = self.all;
         let pairs: Vec<(usize, usize)> = (0..best.len())
             .flat_map(|i| (i + 1..best.len()).map(move |j| (best[i], best[j])))
             .collect();
-        let hurdle = self.hurdle(single);
         let fits = pairs
             .into_par_iter()
             .map(|(a, b)| {
                 let seed = self.seed.child(1000 + (a * all.len() + b) as u64);
                 let mechanisms = [all[a].as_ref(), all[b].as_ref()];
                 let fits = [a, b].map(|i| &self.found.candidates[i]);
+                let hurdle = self.hurdle(&[a, b], single);
                 let fit = pair(self.program, mechanisms, fits, hurdle, seed)?;
                 Ok(fit.map(|fit| Chosen::new(vec![a, b], fit)))
             })
@@ -201,8 +217,7 @@ impl<P: Program> Choice<'_, P> {
             fits.into_iter().partition(|c| {
                 c.as_ref().is_some_and(|c| c.which.contains(&best[0]))
             });
-        let (nested, other) = (most_evidence(nested), most_evidence(others));
-        Ok(Pairs { nested, other })
+        Ok(Pairs { nested: self.best(nested), other: self.best(others) })
     }
 
     fn best_third(
@@ -211,7 +226,6 @@ impl<P: Program> Choice<'_, P> {
         two: &Chosen,
     ) -> Result<Option<Chosen>> {
         let known = two.mechanisms(self.all);
-        let hurdle = self.hurdle(&two.fit);
         let fits = best
             .par_iter()
             .filter(|i| !two.which.contains(i))
@@ -223,12 +237,13 @@ impl<P: Program> Choice<'_, P> {
                     own: two.fit.own(),
                 };
                 let added = (self.all[i].as_ref(), &self.found.candidates[i]);
-                let fit = extend(self.program, &known, added, hurdle, seed)?;
                 let which = [two.which.clone(), vec![i]].concat();
+                let hurdle = self.hurdle(&which, two);
+                let fit = extend(self.program, &known, added, hurdle, seed)?;
                 Ok(fit.map(|fit| Chosen::new(which, fit)))
             })
             .collect::<Result<Vec<_>>>()?;
-        Ok(most_evidence(fits))
+        Ok(self.best(fits))
     }
 }
 
@@ -318,12 +333,6 @@ impl Chosen {
         }
         reaches
     }
-}
-
-fn most_evidence(fits: Vec<Option<Chosen>>) -> Option<Chosen> {
-    fits.into_iter()
-        .flatten()
-        .max_by(|a, b| a.fit.log_evidence.total_cmp(&b.fit.log_evidence))
 }
 
 /// The verdict once combinations are weighed too.

@@ -83,8 +83,14 @@ impl<P: Program> Subject<'_, P> {
         let mut judged = judge(&found, all, &forces, &options.odds);
         let verdict = verdict(&judged);
         progress.begin("weighing pairs", None);
-        let choice =
-            Choice { program, all, found: &found, judged: &judged, seed };
+        let choice = Choice {
+            program,
+            all,
+            found: &found,
+            judged: &judged,
+            odds: &options.odds,
+            seed,
+        };
         let chosen = choice.choose(verdict)?;
         let (verdict, chosen) = explained(verdict, chosen, &judged, all);
         if let Some(chosen) = &chosen {

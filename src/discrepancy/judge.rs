@@ -137,22 +137,44 @@ fn unknown(forces: &[FreeForce], none: &Fit) -> Judged {
     }
 }
 
-/// Half of the prior for `none`, half shared by the other names, times the
-/// user's odds.
+/// What is held likely before the recording is seen: half of it for `none`,
+/// half shared by the other names, times the user's odds.
+pub(super) struct Beforehand<'a> {
+    odds: &'a Odds,
+    /// The odds of all names but `none`.
+    others: f64,
+}
+
+impl<'a> Beforehand<'a> {
+    pub(super) fn of(all: &[Judged], odds: &'a Odds) -> Self {
+        let mut beforehand = Self { odds, others: 0.0 };
+        let others = all.iter().filter(|m| m.name != "none");
+        beforehand.others = others.map(|m| beforehand.odds_of(&m.name)).sum();
+        beforehand
+    }
+
+    fn odds_of(&self, name: &str) -> f64 {
+        self.odds.get(name).copied().unwrap_or(1.0)
+    }
+
+    /// ln of the prior probability of a name, up to a constant.
+    fn log(&self, name: &str) -> f64 {
+        match name {
+            "none" => self.odds_of("none").ln(),
+            name => (self.odds_of(name) / self.others).ln(),
+        }
+    }
+
+    /// In ln, by how much less likely a term is than its absence.
+    pub(super) fn price(&self, name: &str) -> f64 {
+        self.log("none") - self.log(name)
+    }
+}
+
 fn weigh(all: &mut [Judged], odds: &Odds) {
-    let of = |name: &str| odds.get(name).copied().unwrap_or(1.0);
-    let others: f64 =
-        all.iter().filter(|m| m.name != "none").map(|m| of(&m.name)).sum();
-    let logs: Vec<f64> = all
-        .iter()
-        .map(|m| {
-            let prior = match m.name.as_str() {
-                "none" => of("none"),
-                name => of(name) / others,
-            };
-            prior.ln() + m.log_evidence
-        })
-        .collect();
+    let beforehand = Beforehand::of(all, odds);
+    let logs: Vec<f64> =
+        all.iter().map(|m| beforehand.log(&m.name) + m.log_evidence).collect();
     let total = log_sum_exp(logs.iter().copied());
     for (one, log) in all.iter_mut().zip(logs) {
         one.probability = (log - total).exp();
@@ -242,4 +264,25 @@ pub(super) fn separating(
          start or on another slope, would tell them apart."
             .into()
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_further_term_costs_what_the_odds_say() {
+        let names = ["none", "surge", "cohesion", "clock-offset", "unknown"];
+        let named =
+            |name: &str| Judged { name: name.into(), ..Judged::default() };
+        let all = names.map(named);
+        let even = Odds::new();
+        let price = Beforehand::of(&all, &even).price("surge");
+        assert!((price - 4.0_f64.ln()).abs() < 1e-12, "{price}");
+        // Three times as likely as each of three others, which are half as
+        // likely together as nothing.
+        let odds = Odds::from([("surge".into(), 3.0), ("none".into(), 2.0)]);
+        let price = Beforehand::of(&all, &odds).price("surge");
+        assert!((price - (2.0 * 6.0 / 3.0_f64).ln()).abs() < 1e-12, "{price}");
+    }
 }

@@ -88,6 +88,13 @@ const TRIES: usize = 200;
 /// held, and how far the next places lie along them.
 type Along<'r> = (Peak, &'r [usize], &'r [f64]);
 
+/// A mixture and, where their weights are good, draws from it, with a seed for
+/// what follows.
+pub(super) struct Settled {
+    pub(super) mixture: Mixture,
+    found: Option<(Vec<Particle>, Seed)>,
+}
+
 impl Backend for Peaks {
     fn name(&self) -> &'static str {
         "peaks"
@@ -101,7 +108,8 @@ impl Backend for Peaks {
     ) -> Result<Inference> {
         posterior.require_proper("the mixture of peaks")?;
         progress.begin("importance sampling", None);
-        let (mixture, found) = self.settled(posterior, ENOUGH, seed)?;
+        let Settled { mixture, found } =
+            self.settled(posterior, ENOUGH, seed)?;
         progress.advance(self.draws as u64);
         match found {
             Some((found, seed)) => {
@@ -115,15 +123,14 @@ impl Backend for Peaks {
 }
 
 impl Peaks {
-    /// A mixture with draws from it whose weights are good, an effective share
-    /// above `enough` among what makes them so, and a seed for what follows;
-    /// without draws where no such mixture was found.
+    /// A mixture whose draws have good weights, an effective share above
+    /// `enough` among what makes them so.
     pub(super) fn settled(
         &self,
         posterior: &Posterior<'_>,
         enough: f64,
         seed: Seed,
-    ) -> Result<(Mixture, Option<(Vec<Particle>, Seed)>)> {
+    ) -> Result<Settled> {
         let all: Vec<usize> = (0..posterior.dimension()).collect();
         let parts = self.parts(posterior, &all, seed.child(0))?;
         let mut mixture = mixture(&parts)?;
@@ -133,11 +140,12 @@ impl Peaks {
             let found =
                 population(posterior, &base, self.draws, seed.child(0))?;
             if is_good(&found, enough) {
-                return Ok((mixture, Some((found, seed.child(1)))));
+                let found = Some((found, seed.child(1)));
+                return Ok(Settled { mixture, found });
             }
             mixture = taught(&mixture, &found, round, seed.child(2));
         }
-        Ok((mixture, None))
+        Ok(Settled { mixture, found: None })
     }
 
     /// About the log evidence, from the normal approximations of the peaks

@@ -7,27 +7,23 @@
 //! which event's body runs, so that of a change with a part for each event
 //! each sees its own, and fits know nothing of it.
 
-use std::sync::Arc;
+mod labels;
+mod per_event;
+mod pooled;
+
+pub use per_event::PerEvent;
+pub use pooled::Pooled;
 
 use crate::block::List;
-use crate::change::{
-    Candidate, Change, ChangeKind, ChangeOf, Concern, Family, Mechanism, Noun,
-    Reach, Unknown,
-};
+use crate::change::{Family, Mechanism, Unknown};
 use crate::error::{Error, Outcome, Result, Stop};
 use crate::model::{Assembled, Number, Program, Run};
 use crate::observe::Extent;
-use crate::physics::forces::Axis;
 use crate::prior::AnyPrior;
 use crate::scalar::Real;
+use labels::labels;
 
 use super::mechanisms::{catalogue, find, is_held};
-
-/// How many characters a label has at the most.
-const LONGEST: usize = 16;
-/// The prior scale of how far the logarithm of an event's own amplitude lies
-/// from that of the common one, where amplitudes have one sign.
-const RATIO: f64 = 0.5;
 
 /// Several events under one model.
 #[derive(Debug)]
@@ -223,68 +219,7 @@ fn check_alike(first: &Assembled, other: &Assembled) -> Result<()> {
     }
 }
 
-/// Short and different names: the first words, numbered where they are alike.
-fn labels<'n>(names: impl Iterator<Item = &'n str>) -> Vec<String> {
-    let mut labels: Vec<String> = Vec::new();
-    for name in names {
-        let word = name.split_whitespace().next().unwrap_or_default();
-        let plain = |c: &char| c.is_ascii_alphanumeric() || "_-".contains(*c);
-        let short: String = word.chars().filter(plain).take(LONGEST).collect();
-        let short = if short.is_empty() { "event".into() } else { short };
-        let mut label = short.clone();
-        let mut number = 1;
-        while labels.contains(&label) {
-            number += 1;
-            label = format!("{short}-{number}");
-        }
-        labels.push(label);
-    }
-    labels
-}
-
-/// An event's own mechanism.
-#[derive(Debug, Clone)]
-struct Own {
-    /// Which event.
-    event: usize,
-    mechanism: Arc<dyn Mechanism>,
-    /// How much is unknown about it.
-    count: usize,
-}
-
-/// A mechanism that each of several events has in an amount of its own.
-#[derive(Debug)]
-pub struct PerEvent {
-    each: Vec<Own>,
-    events: usize,
-    unknowns: Vec<Unknown>,
-}
-
-impl PerEvent {
-    /// One mechanism for each event, of one name, or none where it does not
-    /// apply; `None` if it applies to no event.
-    pub fn new(
-        each: Vec<Option<Box<dyn Mechanism>>>,
-        labels: &[String],
-    ) -> Option<Self> {
-        let events = each.len();
-        let (mut own, mut unknowns) = (Vec::new(), Vec::new());
-        for (event, mechanism) in each.into_iter().enumerate() {
-            let Some(mechanism) = mechanism else { continue };
-            let label = labels.get(event).map_or("", String::as_str);
-            let added = mechanism.unknowns();
-            let (mechanism, count) = (Arc::from(mechanism), added.len());
-            own.push(Own { event, mechanism, count });
-            unknowns.extend(added.iter().map(|one| of_event(one, label)));
-        }
-        (!own.is_empty()).then_some(Self { each: own, events, unknowns })
-    }
-
-    fn one(&self) -> &dyn Mechanism {
-        self.each[0].mechanism.as_ref()
-    }
-}
-
+/// An unknown of one event, by its label.
 fn of_event(unknown: &Unknown, label: &str) -> Unknown {
     let name = format!("{label}.{}", unknown.name);
     Unknown { name, ..unknown.clone() }
@@ -332,134 +267,4 @@ macro_rules! says_as {
     };
 }
 
-impl Candidate for PerEvent {
-    says_as!(one);
-}
-
-impl<K: ChangeKind> ChangeOf<K> for PerEvent {
-    fn change_of(&self, values: &[Real<K>]) -> Change<K> {
-        let mut own = vec![Change::default(); self.events];
-        let mut rest = values;
-        for Own { event, mechanism, count } in &self.each {
-            let (values, others) = rest.split_at(*count);
-            own[*event] = K::change(mechanism.as_ref(), values);
-            rest = others;
-        }
-        Change { own, ..Change::default() }
-    }
-}
-
-impl Mechanism for PerEvent {
-    fn of_event(&self, event: usize) -> Concern {
-        let mut begin = 0;
-        let mut mechanism: Option<Box<dyn Mechanism>> = None;
-        for own in &self.each {
-            let unknowns = &self.unknowns[begin..begin + own.count];
-            begin += own.count;
-            if own.event == event {
-                mechanism = Some(Box::new(Self {
-                    each: vec![own.clone()],
-                    events: self.events,
-                    unknowns: unknowns.to_vec(),
-                }));
-            }
-        }
-        Concern::Own { common: 0, mechanism }
-    }
-}
-
-/// A mechanism at the same places in all events, with amplitudes that differ
-/// about a common one.
-///
-/// An amplitude that may have either sign is the common one plus spread times
-/// a standard normal deviate; one of a single sign is the common one times
-/// exp(spread times deviate), which keeps its sign.
-#[derive(Debug)]
-pub struct Pooled {
-    inner: Arc<dyn Mechanism>,
-    unknowns: Vec<Unknown>,
-    /// How many of these all events have in common.
-    common: usize,
-    /// Which event the first deviate is of; the others follow.
-    first: usize,
-    signed: bool,
-}
-
-impl Pooled {
-    /// Pools a mechanism over events with these labels. After its own
-    /// unknowns come the spread and each event's deviate.
-    pub fn new(inner: Box<dyn Mechanism>, labels: &[String]) -> Self {
-        let mut unknowns = inner.unknowns();
-        let (signed, scale, unit) = match unknowns.first() {
-            Some(Unknown { prior: AnyPrior::Normal(_, sd), unit, .. }) => {
-                (true, 0.5 * sd, *unit)
-            }
-            _ => (false, RATIO, "1"),
-        };
-        let spread = AnyPrior::HalfNormal(scale);
-        unknowns.push(Unknown { name: "spread".into(), unit, prior: spread });
-        let common = unknowns.len();
-        unknowns.extend(labels.iter().map(|label| {
-            let prior = AnyPrior::Normal(0.0, 1.0);
-            let name = "deviation".into();
-            of_event(&Unknown { name, unit: "1", prior }, label)
-        }));
-        let inner = Arc::from(inner);
-        Self { inner, unknowns, common, first: 0, signed }
-    }
-
-    fn inner(&self) -> &dyn Mechanism {
-        self.inner.as_ref()
-    }
-
-    /// The amplitude of an event whose deviation is `deviate`.
-    fn amplitude<K: ChangeKind>(
-        &self,
-        common: Real<K>,
-        spread: Real<K>,
-        deviate: Real<K>,
-    ) -> Real<K> {
-        match self.signed {
-            true => common + spread * deviate,
-            false => common * (spread * deviate).exp(),
-        }
-    }
-}
-
-impl Candidate for Pooled {
-    says_as!(inner);
-}
-
-impl<K: ChangeKind> ChangeOf<K> for Pooled {
-    fn change_of(&self, values: &[Real<K>]) -> Change<K> {
-        let (common, deviates) = values.split_at(self.common);
-        let (mut amounts, spread): (List<Real<K>>, _) = match common {
-            [amounts @ .., spread] => {
-                (amounts.iter().copied().collect(), *spread)
-            }
-            [] => return Change::default(),
-        };
-        let mut own = vec![Change::default(); self.first];
-        own.extend(deviates.iter().map(|&deviate| {
-            amounts[0] = self.amplitude(common[0], spread, deviate);
-            K::change(self.inner.as_ref(), &amounts)
-        }));
-        Change { own, ..Change::default() }
-    }
-}
-
-impl Mechanism for Pooled {
-    fn of_event(&self, event: usize) -> Concern {
-        let of_common = self.unknowns[..self.common].iter();
-        let own = &self.unknowns[self.common + event];
-        let mechanism = Self {
-            inner: Arc::clone(&self.inner),
-            unknowns: of_common.chain([own]).cloned().collect(),
-            common: self.common,
-            first: event,
-            signed: self.signed,
-        };
-        let mechanism = Some(Box::new(mechanism) as Box<dyn Mechanism>);
-        Concern::Own { common: self.common, mechanism }
-    }
-}
+use says_as;

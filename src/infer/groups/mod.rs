@@ -1,0 +1,223 @@
+//! Evidence of posteriors whose coordinates fall into groups, such as those of
+//! several events: given a few that all have in common, the groups are
+//! independent.
+//!
+//! With theta in common and eta_i of group i,
+//!
+//! ```text
+//! Z = integral of p(theta) Z_1(theta) ... Z_n(theta),
+//! Z_i(theta) = integral of p(eta_i) p(y_i | theta, eta_i).
+//! ```
+//!
+//! With nothing in common Z is the product of what each group has alone. Else
+//! theta is drawn from a mixture, as [`Peaks`] does with all coordinates, and
+//! every Z_i(theta) is estimated by importance sampling of its own: a product
+//! of unbiased estimates leaves the estimate of Z unbiased (Tran, Scharth,
+//! Gunawan, Kohn, Brown, Hawkins 2021). A proposal for all coordinates at once
+//! fails instead: with five events of four parameters each, the poor tails of
+//! every one multiply.
+
+mod inner;
+mod region;
+
+use nalgebra::DVector;
+use rand::seq::SliceRandom;
+use rayon::prelude::*;
+
+use super::importance::ImportanceSampling;
+use super::part::Part;
+use super::peaks::{ENOUGH, Peaks, ROUNDS, Ridge, is_good, mixture, taught};
+use super::smc::{Base, Particle, population};
+use super::{Backend, Evidence, Inference, Progress, draws_of};
+use crate::error::{Error, Result};
+use crate::model::Posterior;
+use crate::seed::{Rng, Seed};
+
+use inner::Inner;
+use region::Region;
+
+/// Some coordinates of a posterior, as a posterior of their own.
+#[derive(Debug)]
+pub struct Group<'a> {
+    /// Prior and data of these coordinates alone.
+    pub posterior: &'a Posterior<'a>,
+    /// Which coordinate of the whole each of them is.
+    pub places: Vec<usize>,
+}
+
+/// A posterior with its groups.
+#[derive(Debug)]
+pub struct Grouped<'a> {
+    /// All coordinates.
+    pub whole: &'a Posterior<'a>,
+    /// Those that all groups have in common, under their prior alone; `None`
+    /// where there are none.
+    pub common: Option<Group<'a>>,
+    /// Each group, what is in common among its coordinates.
+    pub groups: Vec<Group<'a>>,
+}
+
+/// The share of the draws of a round that are made of what is in common: each
+/// costs a climb and dozens of draws in every group.
+const OUTER: usize = 2;
+/// At how many joint draws products of groups are put together.
+const JOINT: usize = 2000;
+
+impl Peaks {
+    /// Explores a posterior by its groups.
+    ///
+    /// # Errors
+    /// As [`Backend::explore`].
+    pub fn explore_groups(
+        &self,
+        grouped: &Grouped<'_>,
+        seed: Seed,
+        progress: &dyn Progress,
+    ) -> Result<Inference> {
+        match &grouped.common {
+            None => self.product(grouped, seed, progress),
+            Some(common) => self.nested(grouped, common, seed, progress),
+        }
+    }
+
+    /// Groups with nothing in common: each on its own.
+    fn product(
+        &self,
+        grouped: &Grouped<'_>,
+        seed: Seed,
+        progress: &dyn Progress,
+    ) -> Result<Inference> {
+        let found = grouped
+            .groups
+            .iter()
+            .enumerate()
+            .map(|(i, group)| {
+                let seed = seed.child(i as u64);
+                self.within(group).explore(group.posterior, seed, progress)
+            })
+            .collect::<Result<Vec<_>>>()?;
+        let mut rng = seed.child(found.len() as u64).rng();
+        let mut all = vec![vec![0.0; grouped.whole.dimension()]; JOINT];
+        let (mut log, mut variance) = (0.0, 0.0);
+        let mut warnings = Vec::new();
+        for (one, group) in found.into_iter().zip(&grouped.groups) {
+            let (Some(draws), Some(evidence)) = (one.draws, one.evidence)
+            else {
+                return Err(Error::inference("a group without evidence"));
+            };
+            let mut rows: Vec<&[f64]> = draws.rows().collect();
+            rows.shuffle(&mut rng);
+            for (whole, own) in all.iter_mut().zip(rows.iter().cycle()) {
+                let places = group.places.iter();
+                places.zip(*own).for_each(|(&i, x)| whole[i] = *x);
+            }
+            log += evidence.log;
+            variance += evidence.se * evidence.se;
+            warnings.extend(one.warnings);
+        }
+        warnings.dedup();
+        let mut draws = draws_of(grouped.whole)?;
+        draws.push_chain(all.concat(), None)?;
+        let method = "each group by itself".to_owned();
+        let evidence = Evidence { log, se: variance.sqrt(), method };
+        Ok(Inference {
+            draws: Some(draws),
+            evidence: Some(evidence),
+            warnings,
+            ..Inference::default()
+        })
+    }
+
+    /// The same search within a group: starts and ridges where they cross it.
+    fn within(&self, group: &Group<'_>) -> Self {
+        let crossing = |line: &Vec<f64>| -> Vec<f64> {
+            group.places.iter().map(|&i| line[i]).collect()
+        };
+        let mut from: Vec<Vec<f64>> = self.from.iter().map(crossing).collect();
+        from.dedup();
+        let ridges = self.ridges.iter().filter_map(|ridge| {
+            let place = |held| group.places.iter().position(|p| p == held);
+            let held = ridge.held.iter().map(place).collect::<Option<_>>()?;
+            let places = ridge.places.iter();
+            let places =
+                places.map(|(at, apart)| (crossing(at), apart.clone()));
+            Some(Ridge { held, places: places.collect() })
+        });
+        Self { from, ridges: ridges.collect(), ..self.clone() }
+    }
+
+    /// Groups with something in common.
+    fn nested(
+        &self,
+        grouped: &Grouped<'_>,
+        common: &Group<'_>,
+        seed: Seed,
+        progress: &dyn Progress,
+    ) -> Result<Inference> {
+        let parts =
+            self.parts(grouped.whole, &common.places, seed.child(0))?;
+        let marginals: Vec<Part> =
+            parts.iter().map(|part| part.marginal(&common.places)).collect();
+        let mut mixture = mixture(&marginals)?;
+        let inner = Inner::all(grouped, common);
+        let seed = seed.child(1);
+        let regions = self.regions(&parts, common, &inner, seed.child(0))?;
+        progress.begin("importance sampling", None);
+        let mut round = 0;
+        loop {
+            round += 1;
+            let seed = seed.child(round);
+            let base = Base::Mixture(mixture.clone());
+            let count = self.draws / OUTER;
+            let drawn =
+                population(common.posterior, &base, count, seed.child(0))?;
+            let (found, wholes): (Vec<_>, Vec<_>) = drawn
+                .into_par_iter()
+                .enumerate()
+                .map(|(i, theta)| {
+                    let mut rng = seed.child(1).child(i as u64).rng();
+                    completed(theta, common, &inner, &regions, &mut rng)
+                })
+                .collect::<Result<Vec<(Particle, Particle)>>>()?
+                .into_iter()
+                .unzip();
+            progress.advance(count as u64);
+            if round == ROUNDS || is_good(&found, ENOUGH) {
+                let (whole, seed) = (grouped.whole, seed.child(2));
+                return ImportanceSampling::conclude(whole, &wholes, seed);
+            }
+            mixture = taught(&mixture, &found, round - 1, seed.child(3));
+        }
+    }
+}
+
+/// A draw of the common coordinates with what all groups hold there, and the
+/// same with a draw of all coordinates.
+fn completed(
+    theta: Particle,
+    common: &Group<'_>,
+    inner: &[Inner<'_>],
+    regions: &[Region],
+    rng: &mut Rng,
+) -> Result<(Particle, Particle)> {
+    let place = DVector::from_column_slice(&theta.z);
+    let near = |a: &&Region, b: &&Region| {
+        a.distance(&place).total_cmp(&b.distance(&place))
+    };
+    let Some(region) = regions.iter().min_by(near) else {
+        return Err(Error::inference("no start leads to a peak"));
+    };
+    let mut line = region.reached(&place).as_slice().to_vec();
+    for (&i, z) in common.places.iter().zip(&theta.z) {
+        line[i] = *z;
+    }
+    let prior = theta.log_target();
+    let mut held = 0.0;
+    for (group, shape) in inner.iter().zip(&region.shapes) {
+        if prior + held > f64::NEG_INFINITY {
+            held += group.estimate(&mut line, shape.as_ref(), prior, rng)?;
+        }
+    }
+    let z = theta.z.clone();
+    Ok((theta.clone().completed(z, held), theta.completed(line, held)))
+}
