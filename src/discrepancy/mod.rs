@@ -22,6 +22,7 @@ mod paste;
 mod phrases;
 mod pictures;
 mod place;
+mod signs;
 mod summary;
 #[cfg(test)]
 mod tests;

@@ -4,6 +4,7 @@ use super::phrases::{
     all_called, amounts, called, capital, event, friction, interval, judged,
     log10, model, own_name, probability, range, stretch, with_unit,
 };
+use super::signs::either_sign;
 use super::{
     Baseline, Diagnosis, Judged, Mismatch, Pair, Rival, Told, Verdict,
 };
@@ -39,6 +40,7 @@ pub fn in_words(d: &Diagnosis) -> Vec<String> {
         said.extend(d.mismatch.iter().take(TOLD).map(|m| difference(d, m)));
         said.push(explanation(d));
         said.extend(sizes(d));
+        said.extend(either_sign(d));
         if is_corrected(d) {
             said.push(better(d));
             said.extend(ahead(d));
