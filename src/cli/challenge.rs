@@ -8,7 +8,7 @@ use clap::Args;
 use super::calibrate::{pretty, wrapped};
 use super::progress::Told;
 use super::study::assemble;
-use super::{at_least_one, width, written};
+use super::{at_least_one, folder, width, written};
 use crate::challenge::{
     Answer, Case, Coordinate, Interval, Mix, PowerTable, cases,
     challenge_json, page, power_cases, power_page, run, words,
@@ -39,7 +39,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "MECHANISM")]
     power: Option<String>,
     /// Folder to write the page and challenge.json to
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = folder)]
     out: Option<PathBuf>,
     /// Print one JSON document instead of the words
     #[arg(long)]

@@ -100,11 +100,25 @@ impl Work {
 /// The most draws of all chains together: 32 MB for each parameter.
 const MOST_DRAWS: usize = 4_000_000;
 
+/// A folder that results can go to, looked at before the work and not after.
+fn folder(text: &str) -> std::result::Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let there = path.ancestors().find(|path| path.exists());
+    match there {
+        Some(there) if !there.is_dir() => Err(format!(
+            "{} is a file; expected a folder, or a name that is free: give \
+             another, or move the file away",
+            there.display()
+        )),
+        _ => Ok(path),
+    }
+}
+
 /// Where results go.
 #[derive(Debug, Args)]
 struct Output {
     /// Folder to write the results to
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = folder)]
     out: Option<PathBuf>,
     /// Print one JSON document instead of the table
     #[arg(long)]

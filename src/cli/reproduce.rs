@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::calibrate::{pretty, wrapped};
 use super::progress::Told;
-use super::{width, written};
+use super::{folder, width, written};
 use crate::error::Result;
 use crate::io::write_all;
 use crate::report;
@@ -15,7 +15,7 @@ use crate::reproduce::{page, reproduce, reproduction_json, words};
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// Folder to write the page, its pictures and reproduction.json to
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = folder)]
     out: Option<PathBuf>,
     /// How many synthetic series
     #[arg(long, default_value_t = 100)]
