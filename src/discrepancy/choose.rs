@@ -89,10 +89,10 @@ impl<P: Program> Choice<'_, P> {
             .collect::<Result<Vec<_>>>()?;
         let mut all: Vec<Chosen> = fits.into_iter().flatten().collect();
         all.push(chosen);
-        all.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
+        all.sort_by(|a, b| self.worth(b).total_cmp(&self.worth(a)));
         let mut best = all.remove(0);
-        let near = best.fit.log_evidence - RISE * LN_10;
-        all.retain(|other| other.fit.log_evidence > near);
+        let near = self.worth(&best) - RISE * LN_10;
+        all.retain(|other| self.worth(other) > near);
         let rivals = all.into_iter().map(|c| (c.which, c.fit.log_evidence));
         best.rivals = rivals.collect();
         Ok(best)
@@ -119,7 +119,7 @@ impl<P: Program> Choice<'_, P> {
             own: chosen.fit.own(),
         };
         let added = (self.all[other].as_ref(), &self.found.candidates[other]);
-        let hurdle = chosen.fit.log_evidence - RISE * LN_10;
+        let hurdle = self.worth(chosen) + self.price(&which) - RISE * LN_10;
         let seed = self.seed.child(7000 + (k * self.all.len() + other) as u64);
         let fit = extend(self.program, &known, added, hurdle, seed)?;
         Ok(fit.map(|fit| Chosen::new(which, fit)))
@@ -140,11 +140,15 @@ impl<P: Program> Choice<'_, P> {
         names.map(|name| beforehand.price(name)).sum()
     }
 
+    /// ln of the evidence, less what the terms cost beforehand.
+    fn worth(&self, chosen: &Chosen) -> f64 {
+        chosen.fit.log_evidence - self.price(&chosen.which)
+    }
+
     /// Of those that were worth a fit the most probable.
     fn best(&self, fits: Vec<Option<Chosen>>) -> Option<Chosen> {
-        let worth = |c: &Chosen| c.fit.log_evidence - self.price(&c.which);
         let fits = fits.into_iter().flatten();
-        fits.max_by(|a, b| worth(a).total_cmp(&worth(b)))
+        fits.max_by(|a, b| self.worth(a).total_cmp(&self.worth(b)))
     }
 
     fn rises(&self, more: &Chosen, less: &Chosen) -> bool {

@@ -10,9 +10,9 @@ use crate::report::text::plain;
 /// A mode of less than this share is told by the interval already.
 const TOLD: f64 = 0.02;
 /// Between two modes, within this part of the nearer one's size about zero,
-/// there are at the most so many draws.
+/// there are at the most so many draws for one as near that mode.
 const NEAR: f64 = 0.25;
-const FEW: f64 = 0.05;
+const FEW: f64 = 0.5;
 
 /// Which amplitudes of the selected mechanisms may have either sign: "Of
 /// delta_mu either sign fits: 0.10 (probability 0.55) or -0.16 (0.45)."
@@ -43,9 +43,13 @@ fn two_modes(d: &Diagnosis, amplitude: &Told) -> Option<String> {
         return None;
     }
     let mut modes = [(share(&up), median(&up)), (share(&down), median(&down))];
-    let nearer = modes[0].1.min(-modes[1].1);
-    let between = all.iter().filter(|x| x.abs() < NEAR * nearer).count();
-    if between as f64 > FEW * count {
+    let [(_, above), (_, below)] = modes;
+    let nearer = if above < -below { above } else { below };
+    let about = |place: f64| {
+        let near = |x: &&f64| (**x - place).abs() < NEAR * nearer.abs();
+        all.iter().filter(near).count() as f64
+    };
+    if about(0.0) > FEW * about(nearer) {
         return None;
     }
     modes.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -58,6 +62,8 @@ fn two_modes(d: &Diagnosis, amplitude: &Told) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
+    use statrs::distribution::{ContinuousCDF, Normal};
+
     use super::*;
     use crate::discrepancy::fixture::diagnosis;
     use crate::draws::Draws;
@@ -84,5 +90,8 @@ mod tests {
         assert_eq!(with(vec![0.1; 100]), None);
         let one = (0..100).map(|i| 0.01 * f64::from(i) - 0.5).collect();
         assert_eq!(with(one), None);
+        let wide = Normal::new(1.5, 1.0).unwrap();
+        let at = |i| wide.inverse_cdf((f64::from(i) + 0.5) / 1000.0);
+        assert_eq!(with((0..1000).map(at).collect()), None);
     }
 }

@@ -14,7 +14,7 @@ use super::mixture::Mixture;
 use super::smc::{Base, Particle, Smc, log_target, population, systematic};
 use super::{Backend, Effort, Evidence, Inference, Progress, draws_of};
 use crate::draws::{Draws, psis};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::model::{Density, Point, Posterior};
 use crate::seed::Seed;
 
@@ -150,10 +150,10 @@ impl ImportanceSampling {
     }
 
     /// A proposal with more components where given draws, whose target
-    /// densities come with them, or its own show that it is far too low (incremental mixture importance sampling, Raftery,
-    /// Bao 2010), and whether its last draws show no such place any more. A
-    /// mixture of a few components fits the bulk, whatever it leaves out of a
-    /// bent tail.
+    /// densities come with them, or its own show that it is far too low
+    /// (incremental mixture importance sampling, Raftery, Bao 2010), and
+    /// whether its last draws show no such place any more. A mixture of a few
+    /// components fits the bulk, whatever it leaves out of a bent tail.
     fn mended(
         &self,
         posterior: &Posterior<'_>,
@@ -242,6 +242,12 @@ impl ImportanceSampling {
         let n = found.len() as f64;
         let logs: Vec<f64> = found.iter().map(Particle::log_weight).collect();
         let total = super::log_sum_exp(logs.iter().copied());
+        if !total.is_finite() {
+            return Err(Error::inference(
+                "no draw has a positive density: prior and recording \
+                 contradict each other",
+            ));
+        }
         let weights = normalised(found);
         let effective = 1.0 / weights.iter().map(|w| w * w).sum::<f64>();
         let se = ((n / effective - 1.0) / (n - 1.0)).sqrt();

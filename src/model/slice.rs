@@ -12,8 +12,8 @@ use crate::observe::Series;
 use crate::prior::Prior;
 use crate::scalar::{Plain, Real};
 
-/// A model at given values of some of its parameters: a model of the others.
-/// Its density is that of all, so that it integrates to p(known, data).
+/// A model at given values of some of its parameters, whose priors depend on no
+/// others: a model of those. Its density is p(unknown, data | known).
 pub struct Slice<'a> {
     model: &'a dyn Model,
     /// All parameters, those known at their values: on the line, as named.
@@ -21,6 +21,8 @@ pub struct Slice<'a> {
     natural: Vec<f64>,
     /// Which are unknown, in ascending order.
     unknown: Vec<usize>,
+    /// ln of the prior density of the known ones, and of their Jacobian.
+    known: (f64, f64),
 }
 
 impl std::fmt::Debug for Slice<'_> {
@@ -43,12 +45,30 @@ impl<'a> Slice<'a> {
         line: &[f64],
         unknown: &[usize],
     ) -> Result<Self> {
+        let mut known = Known { unknown, declared: 0, sum: (0.0, 0.0) };
+        let model = posterior.model();
+        model.evaluate(Point::Line(line), Some(&mut known))?;
         Ok(Self {
-            model: posterior.model(),
+            model,
             natural: posterior.natural(line)?,
             line: line.to_vec(),
             unknown: unknown.to_vec(),
+            known: known.sum,
         })
+    }
+
+    /// A density without the known ones' prior; on the line also without
+    /// their Jacobian.
+    fn given(&self, density: Density, on_line: bool) -> Density {
+        let (log_prior, log_jacobian) = self.known;
+        Density {
+            log_prior: density.log_prior - log_prior,
+            log_jacobian: match on_line {
+                true => density.log_jacobian - log_jacobian,
+                false => density.log_jacobian,
+            },
+            ..density
+        }
     }
 
     /// All coordinates, with the unknown ones as given.
@@ -83,30 +103,25 @@ impl Model for Slice<'_> {
         listener: Option<&mut dyn Listener<Plain>>,
     ) -> Result<Density> {
         let unknown = &self.unknown;
-        let mut heard = listener.map(|listener| Unknown {
-            listener,
-            unknown,
-            declared: 0,
-        });
+        let mut heard =
+            listener.map(|listener| Heard { listener, unknown, declared: 0 });
         let heard = heard.as_mut().map(|l| l as &mut dyn Listener<Plain>);
-        match point {
-            Point::Line(z) => {
-                let line = self.filled(&self.line, z);
-                self.model.evaluate(Point::Line(&line), heard)
-            }
+        let line = match point {
+            Point::Line(z) => self.filled(&self.line, z),
+            Point::Prior(rng) => match self.drawn(rng)? {
+                (density, None) => return Ok(density),
+                (_, Some(own)) => self.filled(&self.line, &own),
+            },
             Point::Natural(x) => {
                 let natural = self.filled(&self.natural, x);
-                self.model.evaluate(Point::Natural(&natural), heard)
+                let point = Point::Natural(&natural);
+                let density = self.model.evaluate(point, heard)?;
+                return Ok(self.given(density, false));
             }
-            Point::Prior(rng) => match self.drawn(rng)? {
-                (density, None) => Ok(density),
-                (_, Some(own)) => {
-                    let line = self.filled(&self.line, &own);
-                    self.model.evaluate(Point::Line(&line), heard)
-                }
-            },
-            Point::Middle => self.model.evaluate(Point::Middle, heard),
-        }
+            Point::Middle => return self.model.evaluate(Point::Middle, heard),
+        };
+        let density = self.model.evaluate(Point::Line(&line), heard)?;
+        Ok(self.given(density, true))
     }
 
     fn gradient(
@@ -121,7 +136,7 @@ impl Model for Slice<'_> {
         for (slot, &i) in gradient.iter_mut().zip(&self.unknown) {
             *slot = all[i];
         }
-        Ok(density)
+        Ok(self.given(density, true))
     }
 
     fn information(&self, z: &[f64]) -> Result<Information> {
@@ -132,18 +147,39 @@ impl Model for Slice<'_> {
         let gradient = DVector::from_iterator(z.len(), own);
         let rows = precision.select_rows(&self.unknown);
         let precision = rows.select_columns(&self.unknown);
+        let density = self.given(density, true);
         Ok(Information { density, gradient, precision })
     }
 }
 
-/// Hears only of the parameters that are unknown.
-struct Unknown<'l> {
+/// Adds up the priors of the known parameters.
+struct Known<'l> {
+    unknown: &'l [usize],
+    declared: usize,
+    sum: (f64, f64),
+}
+
+impl Listener<Plain> for Known<'_> {
+    fn parameter(&mut self, declaration: &Declaration<'_, Plain>) {
+        if !self.unknown.contains(&self.declared) {
+            let Declaration { value, prior, .. } = declaration;
+            let support = prior.support();
+            let z = Real::new(support.to_line(*value));
+            self.sum.0 += prior.log_density(Real::new(*value)).value();
+            self.sum.1 += support.from_line(z).1.value();
+        }
+        self.declared += 1;
+    }
+}
+
+/// Lets hear only of the parameters that are unknown.
+struct Heard<'l> {
     listener: &'l mut dyn Listener<Plain>,
     unknown: &'l [usize],
     declared: usize,
 }
 
-impl Listener<Plain> for Unknown<'_> {
+impl Listener<Plain> for Heard<'_> {
     fn parameter(&mut self, declaration: &Declaration<'_, Plain>) {
         if self.unknown.contains(&self.declared) {
             self.listener.parameter(declaration);
@@ -200,7 +236,12 @@ mod tests {
         assert_eq!((own.dimension(), &own.parameters()[0].name[..]), (1, "b"));
         let all = whole.information(&line).unwrap();
         let found = own.information(&z).unwrap();
-        assert_eq!(found.density, all.density);
+        let known = AnyPrior::Normal(0.0, 1.0);
+        let known = Prior::<Plain>::log_density(&known, Real::new(line[0]));
+        let off = all.density.log_prior - found.density.log_prior;
+        assert!((off - known.value()).abs() < 1e-12);
+        assert_eq!(found.density.log_jacobian, all.density.log_jacobian);
+        assert_eq!(found.density.log_likelihood, all.density.log_likelihood);
         assert_eq!(found.gradient[0], all.gradient[1]);
         assert_eq!(found.precision[(0, 0)], all.precision[(1, 1)]);
         let mut gradient = [0.0];

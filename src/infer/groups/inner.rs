@@ -10,11 +10,14 @@ use crate::infer::log_sum_exp;
 use crate::infer::mixture::Mixture;
 use crate::infer::peaks::Peaks;
 use crate::infer::smc::log_target;
+use crate::infer::start::drawn;
 use crate::model::{Point, Posterior, Slice};
 use crate::seed::{Rng, Seed};
 
 /// How many draws estimate what a group holds at given common coordinates.
 const INNER: usize = 40;
+/// The share of these that is drawn from the prior.
+const PRIOR_SHARE: f64 = 0.1;
 /// How many climbs from draws of the prior look for other modes of a group
 /// there, and the effective share at which its mixture is good enough.
 const STARTS: usize = 4;
@@ -48,27 +51,41 @@ impl<'a> Inner<'a> {
         self.group.places.iter().map(|&i| whole[i]).collect()
     }
 
-    /// What the group looks like with the common coordinates of a place of
-    /// the whole; `None` where nothing near it has a density.
+    /// What the group looks like with the common coordinates of the first of
+    /// some places of the whole, from all of which modes are looked for; `None`
+    /// where nothing near it has a density.
     pub(super) fn shape(
         &self,
         peaks: &Peaks,
-        whole: &DVector<f64>,
+        places: &[&DVector<f64>],
         seed: Seed,
     ) -> Result<Option<Shape>> {
-        let at = self.at(whole.as_slice());
-        let Some(peak) = self.climbed(&at)? else { return Ok(None) };
-        let mode = peak.line.select_rows(&self.own);
-        let slice = Slice::new(self.group.posterior, &at, &self.own)?;
+        let all = places.iter().map(|place| self.at(place.as_slice()));
+        let all: Vec<Vec<f64>> = all.collect();
+        let Some(peak) = self.climbed(&all[0])? else { return Ok(None) };
+        let (mode, normal) = self.normal(&peak);
+        if normal.is_none() {
+            return Ok(None);
+        }
+        let slice = Slice::new(self.group.posterior, &all[0], &self.own)?;
         let posterior = Posterior::new(&slice)?;
-        let search = Peaks {
-            starts: STARTS,
-            from: vec![mode.as_slice().to_vec()],
-            ridges: Vec::new(),
-            draws: peaks.draws,
-        };
+        let own = |at: &Vec<f64>| self.own.iter().map(|&i| at[i]).collect();
+        let mut from: Vec<Vec<f64>> = all.iter().map(own).collect();
+        from.push(mode.as_slice().to_vec());
+        let ridges = Vec::new();
+        let draws = peaks.draws;
+        let search = Peaks { starts: STARTS, from, ridges, draws };
         let mixture = search.settled(&posterior, SHARP, seed)?.mixture;
         Ok(Some(Shape { mode, mixture }))
+    }
+
+    /// The own coordinates of a peak, and its normal approximation in them.
+    fn normal(&self, peak: &Peak) -> (DVector<f64>, Option<Mixture>) {
+        let mode = peak.line.select_rows(&self.own);
+        let precision = peak.precision.select_rows(&self.own);
+        let factor = precision.select_columns(&self.own).cholesky();
+        let part = factor.map(|f| (1.0, mode.clone(), f.inverse()));
+        (mode, Mixture::of(part.into_iter()))
     }
 
     /// The best place near one, with the same common coordinates.
@@ -78,21 +95,31 @@ impl<'a> Inner<'a> {
 
     /// About the own coordinates, given those in common: what they look like
     /// in the region, carried to where they are best here, and a normal
-    /// approximation; `None` where nothing near has a density.
+    /// approximation; neither where nothing near has a density.
     fn proposal<'s>(
         &self,
         at: &[f64],
         shape: Option<&'s Shape>,
-    ) -> Result<Option<Proposal<'s>>> {
-        let Some(peak) = self.climbed(at)? else { return Ok(None) };
-        let mode = peak.line.select_rows(&self.own);
-        let precision = peak.precision.select_rows(&self.own);
-        let factor = precision.select_columns(&self.own).cholesky();
-        let normal = factor.map(|f| (1.0, mode.clone(), f.inverse()));
-        let normal = Mixture::of(normal.into_iter());
-        let carried = shape.map(|s| (&s.mixture, mode - &s.mode));
-        let any = normal.is_some() || carried.is_some();
-        Ok(any.then_some(Proposal { normal, carried }))
+    ) -> Result<Proposal<'s>> {
+        let mut peak = self.climbed(at)?;
+        if let (None, Some(shape)) = (&peak, shape) {
+            let mut start = at.to_vec();
+            self.put(shape.mode.as_slice(), &mut start);
+            peak = self.climbed(&start)?;
+        }
+        let found = peak.map(|peak| self.normal(&peak));
+        let by = |shape: &Shape| match &found {
+            Some((mode, _)) => mode - &shape.mode,
+            None => DVector::zeros(self.own.len()),
+        };
+        let carried = shape.map(|shape| (&shape.mixture, by(shape)));
+        let normal = found.and_then(|(_, normal)| normal);
+        Ok(Proposal { normal, carried })
+    }
+
+    /// Puts own coordinates into the group's.
+    fn put(&self, own: &[f64], at: &mut [f64]) {
+        self.own.iter().zip(own).for_each(|(&i, z)| at[i] = *z);
     }
 
     /// ln Z_i(theta), estimated, at the common coordinates of a place of the
@@ -106,20 +133,20 @@ impl<'a> Inner<'a> {
         rng: &mut Rng,
     ) -> Result<f64> {
         let mut at = self.at(whole);
-        let Some(proposal) = self.proposal(&at, shape)? else {
-            return Ok(f64::NEG_INFINITY);
-        };
+        let proposal = self.proposal(&at, shape)?;
         let mut logs = Vec::with_capacity(INNER);
         let mut draws = Vec::with_capacity(INNER);
         for _ in 0..INNER {
-            let own = proposal.draw(rng);
-            self.own.iter().zip(&own).for_each(|(&i, z)| at[i] = *z);
-            let density = self.group.posterior.density(Point::Line(&at))?;
-            let target = log_target(&density) - prior;
-            logs.push(target - proposal.log_density(&own));
+            // A draw of the prior that is cut short counts as nothing.
+            let Some(own) = self.draw(&proposal, rng)? else { continue };
+            self.put(&own, &mut at);
+            logs.push(self.log_weight(&proposal, &at, &own, prior)?);
             draws.push(own);
         }
         let total = log_sum_exp(logs.iter().copied());
+        if total == f64::NEG_INFINITY {
+            return Ok(total);
+        }
         let mut left = rng.random::<f64>();
         let chosen = logs.iter().position(|log| {
             left -= (log - total).exp();
@@ -129,6 +156,41 @@ impl<'a> Inner<'a> {
             whole[self.group.places[i]] = *z;
         }
         Ok(total - (INNER as f64).ln())
+    }
+
+    /// Own coordinates from a proposal, or from the prior, so that no place is
+    /// out of reach; `None` for a draw of the prior that is cut short.
+    fn draw(
+        &self,
+        proposal: &Proposal<'_>,
+        rng: &mut Rng,
+    ) -> Result<Option<Vec<f64>>> {
+        if rng.random::<f64>() >= proposal.prior_share() {
+            return Ok(Some(proposal.draw(rng)));
+        }
+        let found = drawn(self.group.posterior, rng)?;
+        Ok(found.map(|(_, line)| self.own.iter().map(|&i| line[i]).collect()))
+    }
+
+    /// ln of the importance weight of own coordinates, in a place of the
+    /// group's.
+    fn log_weight(
+        &self,
+        proposal: &Proposal<'_>,
+        at: &[f64],
+        own: &[f64],
+        prior: f64,
+    ) -> Result<f64> {
+        let density = self.group.posterior.density(Point::Line(at))?;
+        let target = log_target(&density);
+        if target == f64::NEG_INFINITY {
+            return Ok(target);
+        }
+        let share = proposal.prior_share();
+        let before = density.log_prior + density.log_jacobian - prior;
+        let fitted = (1.0 - share).ln() + proposal.log_density(own);
+        let base = log_sum_exp([fitted, share.ln() + before].into_iter());
+        Ok(target - prior - base)
     }
 }
 
@@ -148,6 +210,12 @@ struct Proposal<'s> {
 }
 
 impl Proposal<'_> {
+    /// How much is drawn from the prior instead.
+    fn prior_share(&self) -> f64 {
+        let none = self.normal.is_none() && self.carried.is_none();
+        if none { 1.0 } else { PRIOR_SHARE }
+    }
+
     fn draw(&self, rng: &mut Rng) -> Vec<f64> {
         match (&self.normal, &self.carried) {
             (Some(normal), Some(_)) if rng.random::<f64>() < 0.5 => {
@@ -170,7 +238,9 @@ impl Proposal<'_> {
             mixture.log_density(&back)
         });
         let both = normal.into_iter().chain(carried);
-        let count = both.clone().count() as f64;
-        log_sum_exp(both) - count.ln()
+        match both.clone().count() {
+            0 => f64::NEG_INFINITY,
+            count => log_sum_exp(both) - (count as f64).ln(),
+        }
     }
 }

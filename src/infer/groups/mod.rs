@@ -29,6 +29,7 @@ use super::part::Part;
 use super::peaks::{ENOUGH, Peaks, ROUNDS, Ridge, is_good, mixture, taught};
 use super::smc::{Base, Particle, population};
 use super::{Backend, Evidence, Inference, Progress, draws_of};
+use crate::draws::Draws;
 use crate::error::{Error, Result};
 use crate::model::Posterior;
 use crate::seed::{Rng, Seed};
@@ -57,11 +58,13 @@ pub struct Grouped<'a> {
     pub groups: Vec<Group<'a>>,
 }
 
-/// The share of the draws of a round that are made of what is in common: each
-/// costs a climb and dozens of draws in every group.
+/// One in so many draws of a round is made of what is in common: each costs a
+/// climb and dozens of draws in every group.
 const OUTER: usize = 2;
-/// At how many joint draws products of groups are put together.
-const JOINT: usize = 2000;
+
+/// How the evidence of groups with something in common is found.
+const NESTED: &str = "importance sampling of what is in common, and of each \
+    group within it";
 
 impl Peaks {
     /// Explores a posterior by its groups.
@@ -74,6 +77,7 @@ impl Peaks {
         seed: Seed,
         progress: &dyn Progress,
     ) -> Result<Inference> {
+        grouped.whole.require_proper("the mixture of peaks")?;
         match &grouped.common {
             None => self.product(grouped, seed, progress),
             Some(common) => self.nested(grouped, common, seed, progress),
@@ -96,33 +100,23 @@ impl Peaks {
                 self.within(group).explore(group.posterior, seed, progress)
             })
             .collect::<Result<Vec<_>>>()?;
-        let mut rng = seed.child(found.len() as u64).rng();
-        let mut all = vec![vec![0.0; grouped.whole.dimension()]; JOINT];
-        let (mut log, mut variance) = (0.0, 0.0);
-        let mut warnings = Vec::new();
-        for (one, group) in found.into_iter().zip(&grouped.groups) {
-            let (Some(draws), Some(evidence)) = (one.draws, one.evidence)
-            else {
-                return Err(Error::inference("a group without evidence"));
-            };
-            let mut rows: Vec<&[f64]> = draws.rows().collect();
-            rows.shuffle(&mut rng);
-            for (whole, own) in all.iter_mut().zip(rows.iter().cycle()) {
-                let places = group.places.iter();
-                places.zip(*own).for_each(|(&i, x)| whole[i] = *x);
-            }
-            log += evidence.log;
-            variance += evidence.se * evidence.se;
-            warnings.extend(one.warnings);
-        }
-        warnings.dedup();
         let mut draws = draws_of(grouped.whole)?;
-        draws.push_chain(all.concat(), None)?;
-        let method = "each group by itself".to_owned();
-        let evidence = Evidence { log, se: variance.sqrt(), method };
+        let last = seed.child(found.len() as u64);
+        draws.push_chain(joined(grouped, &found, last), None)?;
+        let each: Option<Vec<Evidence>> =
+            found.iter().map(|one| one.evidence.clone()).collect();
+        let each =
+            each.ok_or_else(|| Error::inference("a group without evidence"))?;
+        let mut warnings: Vec<String> =
+            found.iter().flat_map(|one| one.warnings.clone()).collect();
+        warnings.dedup();
         Ok(Inference {
             draws: Some(draws),
-            evidence: Some(evidence),
+            evidence: Some(Evidence {
+                log: each.iter().map(|e| e.log).sum(),
+                se: each.iter().map(|e| e.se * e.se).sum::<f64>().sqrt(),
+                method: "each group by itself".to_owned(),
+            }),
             warnings,
             ..Inference::default()
         })
@@ -168,7 +162,7 @@ impl Peaks {
             round += 1;
             let seed = seed.child(round);
             let base = Base::Mixture(mixture.clone());
-            let count = self.draws / OUTER;
+            let count = (self.draws / OUTER).max(10);
             let drawn =
                 population(common.posterior, &base, count, seed.child(0))?;
             let (found, wholes): (Vec<_>, Vec<_>) = drawn
@@ -184,11 +178,34 @@ impl Peaks {
             progress.advance(count as u64);
             if round == ROUNDS || is_good(&found, ENOUGH) {
                 let (whole, seed) = (grouped.whole, seed.child(2));
-                return ImportanceSampling::conclude(whole, &wholes, seed);
+                let mut made =
+                    ImportanceSampling::conclude(whole, &wholes, seed)?;
+                if let Some(evidence) = &mut made.evidence {
+                    evidence.method = NESTED.to_owned();
+                }
+                return Ok(made);
             }
             mixture = taught(&mixture, &found, round - 1, seed.child(3));
         }
     }
+}
+
+/// Draws of all coordinates from those of groups that are independent, as many
+/// as the best known group has.
+fn joined(grouped: &Grouped<'_>, found: &[Inference], seed: Seed) -> Vec<f64> {
+    let draws = || found.iter().filter_map(|one| one.draws.as_ref());
+    let count = draws().map(Draws::total).max().unwrap_or(0);
+    let mut all = vec![vec![0.0; grouped.whole.dimension()]; count];
+    let mut rng = seed.rng();
+    for (draws, group) in draws().zip(&grouped.groups) {
+        let mut rows: Vec<&[f64]> = draws.rows().collect();
+        rows.shuffle(&mut rng);
+        for (whole, own) in all.iter_mut().zip(rows.iter().cycle()) {
+            let places = group.places.iter();
+            places.zip(*own).for_each(|(&i, x)| whole[i] = *x);
+        }
+    }
+    all.concat()
 }
 
 /// A draw of the common coordinates with what all groups hold there, and the

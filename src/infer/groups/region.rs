@@ -13,6 +13,8 @@ use crate::seed::Seed;
 /// closely at the most, and how far these are apart, in widths, squared.
 const REGIONS: usize = 4;
 const FAR: f64 = 9.0;
+/// From how many places within a region modes of a group are looked for.
+const PLACES: usize = 6;
 
 /// A region of the common coordinates.
 pub(super) struct Region {
@@ -59,28 +61,37 @@ impl Peaks {
         inner: &[Inner<'_>],
         seed: Seed,
     ) -> Result<Vec<Region>> {
-        let mut regions: Vec<Region> = Vec::new();
-        for part in parts {
-            let Some(mut region) = Region::new(part, &common.places) else {
-                continue;
-            };
-            let far = |r: &Region| r.distance(&region.middle) > FAR;
-            if !regions.iter().all(far) {
-                continue;
-            }
-            let seed = seed.child(regions.len() as u64);
-            region.shapes = inner
-                .iter()
-                .enumerate()
-                .map(|(i, group)| {
-                    group.shape(self, &part.mean, seed.child(i as u64))
-                })
-                .collect::<Result<_>>()?;
-            regions.push(region);
-            if regions.len() == REGIONS {
-                break;
-            }
-        }
-        Ok(regions)
+        let looked_at = |(k, (mut region, places)): (usize, Around<'_>)| {
+            let shapes = inner.iter().enumerate().map(|(i, group)| {
+                let seed = seed.child(k as u64).child(i as u64);
+                group.shape(self, &places, seed)
+            });
+            region.shapes = shapes.collect::<Result<_>>()?;
+            Ok(region)
+        };
+        let regions = around(parts, &common.places);
+        regions.into_iter().enumerate().map(looked_at).collect()
     }
+}
+
+/// A region with the places of the parts in it, the best first.
+type Around<'p> = (Region, Vec<&'p DVector<f64>>);
+
+/// Regions around the parts that hold most, without shapes.
+fn around<'p>(parts: &'p [Part], common: &[usize]) -> Vec<Around<'p>> {
+    let mut regions: Vec<Around<'p>> = Vec::new();
+    for part in parts {
+        let Some(region) = Region::new(part, common) else { continue };
+        let near = |r: &Around<'p>| r.0.distance(&region.middle) <= FAR;
+        match regions.iter().position(near) {
+            Some(k) if regions[k].1.len() < PLACES => {
+                regions[k].1.push(&part.mean);
+            }
+            None if regions.len() < REGIONS => {
+                regions.push((region, vec![&part.mean]));
+            }
+            _ => {}
+        }
+    }
+    regions
 }
