@@ -113,15 +113,26 @@ impl Ground {
         piece.start + (x - self.x[i]) / piece.angle.cos()
     }
 
-    /// The same horizontal points with every angle changed by so many
-    /// radians.
+    /// The horizontal distance at a distance along the slope \[m\].
+    pub(super) fn across(&self, s: f64) -> f64 {
+        let inner = &self.pieces[..self.pieces.len() - 1];
+        let i = inner.partition_point(|piece| piece.end <= s);
+        let piece = &self.pieces[i];
+        self.x[i] + (s - piece.start) * piece.angle.cos()
+    }
+
+    /// As it comes out of a survey that measures distances along the slope
+    /// rightly, and angles off by so many radians: turned about its top. Files
+    /// give horizontal distances to the centimetre.
     pub(super) fn tilted(&self, by: f64) -> Self {
-        let mut z = vec![self.z[0]];
-        for (piece, pair) in self.pieces.iter().zip(self.x.windows(2)) {
-            let drop = (pair[1] - pair[0]) * (piece.angle + by).tan();
-            z.push(z[z.len() - 1] - drop);
+        let (mut x, mut z) = (vec![self.x[0]], vec![self.z[0]]);
+        for (i, piece) in self.pieces.iter().enumerate() {
+            let angle = piece.angle + by;
+            let run = (piece.end - piece.start) * angle.cos();
+            x.push(((x[i] + run) * 1e2).round() / 1e2);
+            z.push(z[i] - (x[i + 1] - x[i]) * angle.tan());
         }
-        Self::from_points(self.x.clone(), &z)
+        Self::from_points(x, &z)
     }
 
     /// -d theta/ds \[1/m\] at `s`: the slope of the least-squares line through
@@ -228,6 +239,11 @@ mod tests {
         let tilted = ground.tilted(0.1);
         let change = tilted.pieces[0].angle - ground.pieces[0].angle;
         assert!((change - 0.1).abs() < 1e-4);
+        // Turned, not sheared: lengths stay, but for the centimetre.
+        assert!((tilted.length() - ground.length()).abs() < 0.03);
+        for s in [25.0, 60.0, 95.0] {
+            assert!((ground.along(ground.across(s)) - s).abs() < 1e-9);
+        }
     }
 
     #[test]

@@ -277,7 +277,19 @@ impl Scenery {
         runs: Vec<(Run, Clock)>,
     ) -> Self {
         let Stage { ground, law, depth, releases, .. } = stage;
-        let survey = effect.survey(&ground).unwrap_or(ground);
+        let Some(survey) = effect.survey(&ground) else {
+            return Self {
+                survey: ground,
+                law,
+                depth,
+                effect,
+                releases,
+                runs,
+            };
+        };
+        // A release is as far along the survey as along the ground.
+        let moved = |x: &f64| survey.across(ground.along(*x));
+        let releases = releases.iter().map(moved).collect();
         Self { survey, law, depth, effect, releases, runs }
     }
 

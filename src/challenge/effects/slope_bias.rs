@@ -1,4 +1,5 @@
-//! A survey whose angles are all off by the same amount.
+//! A survey whose angles are all off by the same amount, distances along the
+//! slope being right.
 
 use super::{Class, Effect, Kind, Scene, Void};
 use crate::challenge::ground::Ground;
