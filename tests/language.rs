@@ -1,6 +1,8 @@
 //! The language: what `model!` accepts, what it makes of it, and the words
 //! with which it refuses the rest.
 
+mod accepted;
+
 use couloir::block::{Block, Field, List};
 use couloir::model::{Collected, Collector, Point, Weights};
 use couloir::noise::{Ar, Iid};
@@ -21,7 +23,6 @@ use couloir::{
 fn mistakes_are_refused_in_plain_words() {
     let cases = trybuild::TestCases::new();
     cases.compile_fail("tests/ui/*.rs");
-    cases.pass("tests/ui/pass/*.rs");
 }
 
 fn event(velocity: &[f64]) -> Event {

@@ -19,38 +19,7 @@ mod tree;
 
 use errors::Errors;
 
-/// Writes a model: its data, its unknowns, and how the data come about.
-///
-/// ```
-/// use couloir::noise::Ar;
-/// use couloir::physics::{Track, friction::Voellmy};
-/// use couloir::model::Point;
-/// use couloir::{Event, Model, Series, model};
-///
-/// model! {
-///     /// Voellmy friction with errors correlated along the flow.
-///     pub struct Calibration { event: Event }
-///
-///     friction ~ Voellmy { mu: Gamma(9.0, 0.03), xi: Gamma(2.5, 400.0) };
-///     errors   ~ Ar { phi: [Uniform(-1.0, 1.0)], sigma2: InverseGamma(3.0, 20.0) };
-///
-///     likelihood {
-///         let flow = event.slide(&friction)?;
-///         event.velocity ~ flow.velocity() + errors;
-///     }
-/// }
-///
-/// # fn main() -> couloir::Result<()> {
-/// let event = Event::on(Track::incline(35.0, 500.0)?)
-///     .velocity(Series::velocity(vec![1.0, 2.0], vec![2.9, 5.6])?)
-///     .build()?;
-/// let model = Calibration::new(event);
-/// // mu, xi, phi, sigma2
-/// let density = model.evaluate(Point::Natural(&[0.3, 1000.0, 0.5, 0.1]), None)?;
-/// assert!(density.natural().is_finite());
-/// # Ok(())
-/// # }
-/// ```
+/// What couloir's `model!` accepts; couloir shows an example.
 ///
 /// # The struct
 ///

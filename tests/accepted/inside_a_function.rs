@@ -2,7 +2,8 @@
 //! denied.
 #![deny(warnings)]
 
-fn main() {
+#[test]
+fn a_model_inside_a_function() {
     couloir::model! {
         #[derive(Debug, Clone)]
         struct Local { event: couloir::Event, }

@@ -6,11 +6,11 @@ use own::S;
 
 mod own {
     use couloir::Real;
-    use couloir::scalar::Kind;
     use couloir::physics::friction::{Friction, Rate, Site, Varies};
+    use couloir::scalar::Kind;
 
-    pub struct S<N> {
-        pub mu: N,
+    pub(super) struct S<N> {
+        pub(super) mu: N,
     }
 
     impl<K: Kind> Friction<K> for S<Real<K>> {
@@ -22,8 +22,8 @@ mod own {
         }
     }
 
-    pub struct K(pub f64);
-    pub struct Block0(pub f64);
+    pub(super) struct K(pub(super) f64);
+    pub(super) struct Block0(pub(super) f64);
 }
 
 fn run(x: f64) -> f64 {
@@ -57,6 +57,7 @@ model! {
     }
 }
 
-fn main() {
+#[test]
+fn a_model_with_names_like_the_macros() {
     let _ = Names::new;
 }
