@@ -211,6 +211,7 @@ impl Stage {
             other: sizes[1],
             ground: &self.ground,
             upper: speeds[3 * speeds.len() / 4],
+            top: least(&|(run, _)| run.place(0.0)),
             from: -least(&|(run, _)| -run.place(0.0)),
             to: least(&|(run, clock)| run.place(clock.duration())),
             duration: least(&|(_, clock)| clock.duration()),
@@ -277,19 +278,15 @@ impl Scenery {
         runs: Vec<(Run, Clock)>,
     ) -> Self {
         let Stage { ground, law, depth, releases, .. } = stage;
-        let Some(survey) = effect.survey(&ground) else {
-            return Self {
-                survey: ground,
-                law,
-                depth,
-                effect,
-                releases,
-                runs,
-            };
+        let (survey, releases) = match effect.survey(&ground) {
+            None => (ground, releases),
+            Some(survey) => {
+                // A release is as far along the survey as along the ground.
+                let moved = |x: &f64| survey.across(ground.along(*x));
+                let releases = releases.iter().map(moved).collect();
+                (survey, releases)
+            }
         };
-        // A release is as far along the survey as along the ground.
-        let moved = |x: &f64| survey.across(ground.along(*x));
-        let releases = releases.iter().map(moved).collect();
         Self { survey, law, depth, effect, releases, runs }
     }
 

@@ -37,7 +37,7 @@ fn make(scene: &Scene<'_>, rng: &mut Rng) -> Option<Box<dyn Effect>> {
     let (from, span) = if in_time {
         (0.0, scene.duration)
     } else {
-        (scene.from, scene.to - scene.from)
+        (scene.top, scene.to - scene.top)
     };
     Some(Box::new(Hardening {
         change: scene.size,
@@ -51,8 +51,7 @@ fn make(scene: &Scene<'_>, rng: &mut Rng) -> Option<Box<dyn Effect>> {
 impl Effect for Hardening {
     fn mu(&self, mu: f64, at: &Moment) -> f64 {
         let x = if self.in_time { at.t } else { at.s };
-        // The other recording's mass may start above this place.
-        let part = ((x - self.from) / self.span).max(0.0);
+        let part = (x - self.from) / self.span;
         let grown = match self.saturates {
             Some(share) => {
                 (1.0 - (-part / share).exp()) / (1.0 - (-1.0 / share).exp())
@@ -60,13 +59,5 @@ impl Effect for Hardening {
             None => part,
         };
         mu + self.change * grown
-    }
-
-    fn borders(&self) -> (Vec<f64>, Vec<f64>) {
-        if self.in_time {
-            (Vec::new(), Vec::new())
-        } else {
-            (vec![self.from], Vec::new())
-        }
     }
 }

@@ -148,7 +148,8 @@ pub(super) struct Scene<'a> {
     pub(super) ground: &'a Ground,
     /// The upper quartile of the speeds \[m/s\].
     pub(super) upper: f64,
-    /// Where the last mass starts \[m\].
+    /// Where the first mass starts, and where the last does \[m\].
+    pub(super) top: f64,
     pub(super) from: f64,
     /// What all reach while recorded \[m\].
     pub(super) to: f64,

@@ -14,7 +14,7 @@ fn ground() -> Ground {
 fn scene(ground: &Ground, size: f64) -> Scene<'_> {
     let (upper, from, to, duration) = (20.0, 50.0, 180.0, 12.0);
     let other = size;
-    Scene { size, other, ground, upper, from, to, duration }
+    Scene { size, other, ground, upper, top: from, from, to, duration }
 }
 
 /// Speeds and the errors upon them, with an effect of a size.
