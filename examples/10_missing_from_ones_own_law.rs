@@ -1,6 +1,6 @@
 //! What is missing from a law of one's own: friction that is lower where the
 //! flow is deep, on a synthetic slope with a stretch that is rougher.
-use couloir::discrepancy::{Options, diagnose, in_words, mechanisms::find};
+use couloir::discrepancy::{Options, diagnose, mechanisms::find, summary};
 use couloir::{model::With, prelude::*};
 
 /// Dry friction under a flow of depth h: r = mu/(1 + h/2 m) g cos(theta).
@@ -43,7 +43,7 @@ fn main() -> Result<()> {
     let times = (1..25).map(|i| 0.5 * f64::from(i)).collect();
     let plan = Event::on(Track::incline(30.0, 900.0)?)
         .named("A rougher stretch (synthetic)")
-        .velocity(Series::velocity(times, vec![5.0; 24])?);
+        .velocity(Series::velocity(times, vec![10.0; 24])?);
     let mut own = Own::new(plan.build()?);
     let patch = find("friction-patch", &own.event.extent(), &[])?;
     let truth = With::new(&own, &[patch.as_ref()]);
@@ -53,6 +53,6 @@ fn main() -> Result<()> {
     let mut options = Options::default();
     (options.friction, options.noise) = ("lubricated".into(), "iid".into());
     let found = diagnose(&own, &own.event, &options, &Quiet)?;
-    in_words(&found).iter().for_each(|said| println!("{said}")); // 4. The result
+    println!("{}", summary(&found, 80)); // 4. The result
     Ok(())
 }
