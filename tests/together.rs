@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use couloir::change::{Family, Mechanism};
+use couloir::change::Mechanism;
 use couloir::discrepancy::mechanisms::{FrictionPatch, find};
 use couloir::discrepancy::{
     Fit, Options, Sharing, Together, Verdict, diagnose, fit,
@@ -277,19 +277,19 @@ fn a_pooled_amplitude_is_the_common_one_where_nothing_spreads() {
         assert_eq!(pooled.label(), shared.label());
         let middle = |m: &dyn Mechanism| -> Vec<f64> {
             let unknowns = m.unknowns();
-            unknowns.iter().map(|u| u.prior.quantile(0.6).unwrap()).collect()
+            unknowns.iter().map(|u| u.prior.quantile(0.4).unwrap()).collect()
         };
         let common = middle(shared.as_ref());
         let a = With::new(&together, &[shared.as_ref()]);
         let a = likelihood(&a, &[&common, &own[..]].concat());
         let mut values = common.clone();
-        if pooled.family() == Family::Physics {
+        if !pooled.is_each_events_own() {
             values.extend([1e-12, 0.7, -0.4]);
         }
         let with = With::new(&together, &[pooled.as_ref()]);
         let b = likelihood(&with, &[&values, &own[..]].concat());
         assert!((a - b).abs() < 1e-6, "{}: {a} {b}", pooled.label());
-        if pooled.family() == Family::Physics {
+        if !pooled.is_each_events_own() {
             let last = values.len() - 3;
             values[last] = 0.05;
             let c = likelihood(&with, &[&values, &own[..]].concat());

@@ -6,6 +6,7 @@
 //! follows from those for every kind of number.
 
 use std::fmt::{self, Debug};
+use std::ops::Range;
 
 use super::Change;
 use crate::physics::forces::Axis;
@@ -52,6 +53,11 @@ pub struct Unknown {
     pub unit: &'static str,
     /// Its prior, scaled to the event.
     pub prior: AnyPrior,
+    /// Where a stretch ends at the latest whose length this is, the unknown
+    /// before it being where it begins: the prior, a uniform one, reaches no
+    /// further than what is left then. A stretch that would end later is none:
+    /// what differs up to the last value is a step.
+    pub until: Option<f64>,
 }
 
 /// What something is called in a sentence: "a clock that is off".
@@ -111,10 +117,16 @@ pub trait Candidate: Debug + Send + Sync {
     /// model back as it was.
     fn unknowns(&self) -> Vec<Unknown>;
 
-    /// How many of the unknowns, the first ones, are amplitude and places;
-    /// the others follow from them and the data.
-    fn leading(&self) -> usize {
-        self.unknowns().len()
+    /// Whether each of several events has it in an amount of its own, as
+    /// starts and errors are.
+    fn is_each_events_own(&self) -> bool {
+        matches!(self.family(), Family::Start | Family::Errors)
+    }
+
+    /// Which of the unknowns are an amplitude and its places, one range for
+    /// each amplitude; the others follow from them and the data.
+    fn amplitudes(&self) -> Vec<Range<usize>> {
+        std::iter::once(0..self.unknowns().len()).collect()
     }
 
     /// Along which axis, where there are variants over several.

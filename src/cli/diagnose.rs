@@ -57,6 +57,9 @@ fn odds(text: &str) -> Result<(String, f64), String> {
     }
 }
 
+/// The folder of the events with what was found, within that of the results.
+const CORRECTED: &str = "corrected";
+
 /// Files by their names in the folder of the results.
 type Files = Vec<(PathBuf, String)>;
 
@@ -72,9 +75,13 @@ impl Arguments {
         drop(told);
         let mut names =
             vec!["report.html", "diagnosis.json", "draws.csv", "pictures/"];
+        let mut old = None;
         if let Some(folder) = &self.output.out {
             let again = corrected(&subjects, &labels, &found, laws)?;
-            if !again.is_empty() {
+            if again.is_empty() {
+                let path = folder.join(CORRECTED);
+                old = path.is_dir().then_some(path);
+            } else {
                 names.push("corrected/");
             }
             let mut files = reports(&found);
@@ -86,6 +93,10 @@ impl Arguments {
         }
         let mut text = summary(&found, width());
         text.push_str(&written(self.output.out.as_deref(), &names));
+        if let Some(old) = old {
+            let old = old.display();
+            text.push_str(&format!("{old}: of an earlier diagnosis\n"));
+        }
         Ok(text)
     }
 
@@ -157,7 +168,7 @@ fn corrected(
     }
     let mut files = Files::new();
     for (i, event) in subjects.iter().enumerate() {
-        let mut folder = PathBuf::from("corrected");
+        let mut folder = PathBuf::from(CORRECTED);
         folder.extend(labels.get(i));
         let event = event.corrected(laws, added)?.into_iter();
         files.extend(event.map(|(name, text)| (folder.join(name), text)));

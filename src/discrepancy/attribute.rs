@@ -1,9 +1,11 @@
 //! Which mechanism explains the mismatch: evidence of each, and of pairs.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::fit::{Fit, fit, spread};
-use crate::change::Mechanism;
+use crate::change::{Mechanism, Unknown};
 use crate::error::Result;
 use crate::infer::{Peaks, Progress, Ridge};
 use crate::model::{Posterior, Program, With};
@@ -77,34 +79,51 @@ fn single<P: Program>(
         .into_iter()
         .map(|(place, _)| [place, none.own().to_vec()].concat())
         .collect();
-    let ridges = vec![ridge(mechanism, &[], none.own(), seed.child(1))];
+    let ridges = ridges(mechanism, &[], none.own(), seed.child(1));
     let backend = Peaks { starts: 4, from, ridges, ..Peaks::default() };
     fit(program, &[mechanism], &backend, seed.child(2))
 }
 
 /// The coordinates of a mechanism along which the data may tell little, with
-/// even places along them; `before` and `after` are where all others begin.
-///
-/// An amplitude that may have either sign follows from where its stretch is,
-/// nearly as in linear regression: there it is not among them.
-fn ridge(
+/// even places along them, for each of its amplitudes; `before` and `after`
+/// are where all others begin.
+fn ridges(
     mechanism: &dyn Mechanism,
     before: &[f64],
     after: &[f64],
     seed: Seed,
-) -> Ridge {
+) -> Vec<Ridge> {
     let unknowns = mechanism.unknowns();
-    let (leading, others) = unknowns.split_at(mechanism.leading());
+    let one = |along: Range<usize>| {
+        let earlier = vec![0.0; along.start];
+        let later = vec![0.0; unknowns.len() - along.end];
+        let before = [before, &earlier].concat();
+        let after = [&later, after].concat();
+        ridge(&unknowns[along], &before, &after, seed)
+    };
+    mechanism.amplitudes().into_iter().map(one).collect()
+}
+
+/// Even places along an amplitude and where it is.
+///
+/// An amplitude that may have either sign follows from where its stretch is,
+/// nearly as in linear regression: there it is not among them.
+fn ridge(
+    along: &[Unknown],
+    before: &[f64],
+    after: &[f64],
+    seed: Seed,
+) -> Ridge {
     let signed =
-        leading.len() > 1 && matches!(leading[0].prior, AnyPrior::Normal(..));
+        along.len() > 1 && matches!(along[0].prior, AnyPrior::Normal(..));
     let free = usize::from(signed);
-    let held = (before.len() + free..before.len() + leading.len()).collect();
-    let kept = &leading[free..];
-    let (amplitude, others) = (vec![0.0; free], vec![0.0; others.len()]);
+    let held = (before.len() + free..before.len() + along.len()).collect();
+    let kept = &along[free..];
+    let amplitude = vec![0.0; free];
     let places = spread(kept, places(kept.len()), seed)
         .into_iter()
         .map(|(place, apart)| {
-            ([before, &amplitude, &place, &others, after].concat(), apart)
+            ([before, &amplitude, &place, after].concat(), apart)
         })
         .collect();
     Ridge { held, places }
@@ -119,20 +138,20 @@ pub(super) struct Known<'a> {
     pub(super) own: &'a [f64],
 }
 
-/// Starts and a ridge for one more mechanism, all else where it is best.
+/// Starts and ridges for one more mechanism, all else where it is best.
 fn ways(
     added: (&dyn Mechanism, &Fit),
     before: &[f64],
     after: &[f64],
     seed: Seed,
-) -> (Vec<Vec<f64>>, Ridge) {
+) -> (Vec<Vec<f64>>, Vec<Ridge>) {
     let unknowns = added.0.unknowns();
     let joined = |place: &[f64]| [before, place, after].concat();
     let mut from = vec![joined(added.1.mechanism())];
     let anywhere =
         spread(&unknowns, climbs(unknowns.len()) / 2, seed.child(0));
     from.extend(anywhere.iter().map(|(place, _)| joined(place)));
-    (from, ridge(added.0, before, after, seed.child(1)))
+    (from, ridges(added.0, before, after, seed.child(1)))
 }
 
 /// Fits a pair: from the best of either, with the other anywhere; `None`
@@ -154,7 +173,7 @@ pub fn pair<P: Program>(
     let backend = Peaks {
         starts: 0,
         from: [second.0, first.0].concat(),
-        ridges: vec![second.1, first.1],
+        ridges: [second.1, first.1].concat(),
         ..Peaks::default()
     };
     fit_if_worth(program, &mechanisms, &backend, hurdle, seed.child(9))
@@ -189,10 +208,9 @@ pub(super) fn extend<P: Program>(
     hurdle: f64,
     seed: Seed,
 ) -> Result<Option<Fit>> {
-    let (from, ridge) = ways(added, known.added, known.own, seed.child(0));
+    let (from, ridges) = ways(added, known.added, known.own, seed.child(0));
     let mut mechanisms = known.mechanisms.to_vec();
     mechanisms.push(added.0);
-    let ridges = vec![ridge];
     let backend = Peaks { starts: 0, from, ridges, ..Peaks::default() };
     fit_if_worth(program, &mechanisms, &backend, hurdle, seed.child(9))
 }

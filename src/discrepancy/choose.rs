@@ -9,7 +9,7 @@ use super::attribute::{Attribution, Known, extend, pair};
 use super::before_and_after::rows_of;
 use super::diagnosis::{Judged, Rival, Verdict};
 use super::fit::Fit;
-use super::judge::{Beforehand, Odds};
+use super::judge::Beforehand;
 use crate::change::{Family, Mechanism, Reach};
 use crate::draws::median;
 use crate::error::Result;
@@ -46,7 +46,7 @@ pub(super) struct Choice<'a, P> {
     pub(super) found: &'a Attribution,
     /// Their names, most probable first.
     pub(super) judged: &'a [Judged],
-    pub(super) odds: &'a Odds,
+    pub(super) beforehand: Beforehand<'a>,
     pub(super) seed: Seed,
 }
 
@@ -135,9 +135,8 @@ impl<P: Program> Choice<'_, P> {
 
     /// In ln, how much less likely beforehand these are than none of them.
     fn price(&self, which: &[usize]) -> f64 {
-        let beforehand = Beforehand::of(self.judged, self.odds);
         let names = which.iter().map(|&i| self.all[i].name());
-        names.map(|name| beforehand.price(name)).sum()
+        names.map(|name| self.beforehand.price(name)).sum()
     }
 
     /// ln of the evidence, less what the terms cost beforehand.

@@ -10,7 +10,9 @@ use super::check::baseline;
 use super::choose::{Choice, Chosen, explained};
 use super::diagnosis::{Diagnosis, Verdict};
 use super::fit::Fit;
-use super::judge::{check_odds, group, judge, separating, told, verdict};
+use super::judge::{
+    Beforehand, check_odds, group, judge, separating, told, verdict,
+};
 use super::locate::{FreeForce, free_fit, locate};
 use super::mechanisms::catalogue;
 use super::options::Options;
@@ -88,7 +90,7 @@ impl<P: Program> Subject<'_, P> {
             all,
             found: &found,
             judged: &judged,
-            odds: &options.odds,
+            beforehand: Beforehand::of(&judged, &options.odds),
             seed,
         };
         let chosen = choice.choose(verdict)?;

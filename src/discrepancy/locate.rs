@@ -112,6 +112,7 @@ impl Candidate for FreeForm {
                 name: format!("wave[{}]", i + 1),
                 unit: "1",
                 prior: AnyPrior::Normal(0.0, 1.0),
+                until: None,
             })
             .collect()
     }

@@ -67,7 +67,7 @@ const ONE: f64 = 1.0;
 /// one that is enough with an index below 1. Either passes where a tail is
 /// missed that no draw reaches, which it is for the walks to prevent.
 pub(super) const ENOUGH: f64 = 0.1;
-const AMPLE: f64 = 0.25;
+pub(super) const AMPLE: f64 = 0.25;
 /// Rounds of importance sampling before tempering takes over: from which on
 /// they fit components to the draws, and from which on they mend.
 pub(super) const ROUNDS: u64 = 6;
@@ -92,7 +92,7 @@ type Along<'r> = (Peak, &'r [usize], &'r [f64]);
 /// what follows.
 pub(super) struct Settled {
     pub(super) mixture: Mixture,
-    found: Option<(Vec<Particle>, Seed)>,
+    pub(super) found: Option<(Vec<Particle>, Seed)>,
 }
 
 impl Backend for Peaks {
@@ -131,9 +131,19 @@ impl Peaks {
         enough: f64,
         seed: Seed,
     ) -> Result<Settled> {
-        let all: Vec<usize> = (0..posterior.dimension()).collect();
-        let parts = self.parts(posterior, &all, seed.child(0))?;
-        let mut mixture = mixture(&parts)?;
+        let parts = self.parts(posterior, seed.child(0))?;
+        self.settled_from(posterior, &parts, enough, seed)
+    }
+
+    /// The same from parts that are known.
+    pub(super) fn settled_from(
+        &self,
+        posterior: &Posterior<'_>,
+        parts: &[Part],
+        enough: f64,
+        seed: Seed,
+    ) -> Result<Settled> {
+        let mut mixture = mixture(parts)?;
         for round in 0..ROUNDS {
             let seed = seed.child(1 + round);
             let base = Base::Mixture(mixture.clone());
@@ -191,12 +201,10 @@ impl Peaks {
         Ok(if sampled.warnings.is_empty() { sampled } else { led })
     }
 
-    /// The parts of all peaks and ridges that hold anything, most first, those
-    /// of walks along given coordinates among them.
+    /// The parts of all peaks, ridges and walks that hold anything, most first.
     pub(super) fn parts(
         &self,
         posterior: &Posterior<'_>,
-        along: &[usize],
         seed: Seed,
     ) -> Result<Vec<Part>> {
         let ridges = self.along_ridges(posterior)?;
@@ -205,7 +213,7 @@ impl Peaks {
         let of_ridges = ridges.iter().filter_map(|(peak, held, apart)| {
             Part::of_place(peak, held, apart)
         });
-        let of_walks = walks(posterior, &peaks, along)?;
+        let of_walks = walks(posterior, &peaks)?;
         let all = of_peaks.chain(of_ridges).chain(of_walks);
         let mut parts: Vec<Part> = all.collect();
         parts.sort_by(|a, b| b.log.total_cmp(&a.log));

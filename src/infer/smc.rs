@@ -70,7 +70,7 @@ impl Smc {
 }
 
 /// The share of prior draws in the second passage's base.
-const PRIOR_SHARE: f64 = 0.1;
+pub(super) const PRIOR_SHARE: f64 = 0.1;
 
 /// The most components of the second passage's base.
 const MOST_COMPONENTS: usize = 6;
@@ -102,9 +102,7 @@ impl Base {
         match self {
             Self::Prior => prior,
             Self::Mixture(mixture) => {
-                let fitted = (1.0 - PRIOR_SHARE).ln() + mixture.log_density(z);
-                let prior = PRIOR_SHARE.ln() + prior;
-                super::log_sum_exp([fitted, prior].into_iter())
+                blended(PRIOR_SHARE, prior, mixture.log_density(z))
             }
         }
     }
@@ -139,6 +137,12 @@ impl Base {
         let base = self.log_density(&z, density);
         Particle { z, base, target: log_target(density) }
     }
+}
+
+/// The log density of a proposal with a share of the prior.
+pub(super) fn blended(share: f64, prior: f64, fitted: f64) -> f64 {
+    let parts = [(1.0 - share).ln() + fitted, share.ln() + prior];
+    super::log_sum_exp(parts.into_iter())
 }
 
 /// ln of the posterior's density on the line, up to its constant.

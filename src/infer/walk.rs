@@ -28,7 +28,7 @@ const STRIDES: usize = 12;
 /// How much above the normal approximation, in ln, a place becomes a part.
 const ABOVE: f64 = 0.4;
 
-/// The parts met on walks from the highest of some peaks, along some of the
+/// The parts met on walks from the highest of some peaks, along all
 /// coordinates both ways.
 ///
 /// # Errors
@@ -36,11 +36,9 @@ const ABOVE: f64 = 0.4;
 pub(super) fn walks(
     posterior: &Posterior<'_>,
     peaks: &[Peak],
-    along: &[usize],
 ) -> Result<Vec<Part>> {
     let walked = peaks.iter().take(WALKED);
-    let walks: Vec<Walk<'_>> =
-        walked.flat_map(|peak| Walk::all(peak, along)).collect();
+    let walks: Vec<Walk<'_>> = walked.flat_map(Walk::all).collect();
     let met = walks
         .into_par_iter()
         .map(|walk| walk.go(posterior))
@@ -59,13 +57,13 @@ struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    /// Those along given coordinates, up and down.
-    fn all(peak: &'a Peak, along: &[usize]) -> Vec<Self> {
+    /// Those along every coordinate, up and down.
+    fn all(peak: &'a Peak) -> Vec<Self> {
         let Some(factor) = peak.precision.clone().cholesky() else {
             return Vec::new();
         };
         let covariance = factor.inverse();
-        let ways = along.iter().flat_map(|&i| [(i, 1.0), (i, -1.0)]);
+        let ways = (0..peak.line.len()).flat_map(|i| [(i, 1.0), (i, -1.0)]);
         ways.map(|(along, sign)| {
             let width = covariance[(along, along)].sqrt();
             let stride = covariance.column(along) * (sign * STRIDE / width);

@@ -1,8 +1,9 @@
 //! One of several events of a program, and what all of them have in common.
 
+use super::amount::Amount;
 use super::number::Number;
 use super::program::Program;
-use super::run::{Label, Run};
+use super::run::Run;
 use crate::change::Unknown;
 use crate::error::Outcome;
 
@@ -44,9 +45,8 @@ impl<'a, P: Program> Common<'a, P> {
 
 impl<P: Program> Program for Common<'_, P> {
     fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
-        for (name, unknown) in &self.added {
-            run.scalar(Label::new(name, unknown.unit), unknown.prior)?;
-        }
+        let added = self.added.iter();
+        run.amounts(added.map(|(name, unknown)| Amount::of(name, unknown)))?;
         self.program.run_common(run)
     }
 }

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::amount::Amount;
 use super::number::Number;
 use super::program::Program;
 use super::run::{Label, Run};
@@ -40,6 +41,16 @@ struct Unknown {
     name: String,
     unit: String,
     prior: AnyPrior,
+    /// As of a mechanism's unknown.
+    until: Option<f64>,
+}
+
+impl Unknown {
+    fn amount(&self) -> Amount<'_> {
+        let Self { name, unit, prior, until } = self;
+        let label = Label::new(name, unit);
+        Amount { label, prior: *prior, until: *until }
+    }
 }
 
 impl Assembled {
@@ -70,6 +81,7 @@ impl Assembled {
                 name: name.clone(),
                 unit: unit_of(field, unit),
                 prior,
+                until: None,
             });
         }
         check_uneven(&event, noise.as_ref(), &fields, &unknowns)?;
@@ -100,8 +112,11 @@ impl Assembled {
             self.mechanisms.push((Arc::from(mechanism), added.len()));
             self.unknowns.extend(added.into_iter().map(|unknown| {
                 let name = format!("{name}.{}", unknown.name);
-                let prior = *priors.get(&name).unwrap_or(&unknown.prior);
-                Unknown { name, unit: unknown.unit.to_owned(), prior }
+                let (prior, until) = match priors.get(&name) {
+                    Some(given) => (*given, None),
+                    None => (unknown.prior, unknown.until),
+                };
+                Unknown { name, unit: unknown.unit.to_owned(), prior, until }
             }));
         }
         Ok(self)
@@ -332,13 +347,7 @@ impl Assembled {
         run: &mut Run<'_, K>,
         which: Range<usize>,
     ) -> Result<List<Real<K>>, Stop> {
-        let unknowns = self.unknowns[which].iter();
-        unknowns
-            .map(|unknown| {
-                let label = Label::new(&unknown.name, &unknown.unit);
-                run.scalar(label, unknown.prior)
-            })
-            .collect()
+        run.amounts(self.unknowns[which].iter().map(Unknown::amount))
     }
 
     fn observe<K: Number>(

@@ -30,6 +30,30 @@ pub struct Information {
     pub precision: DMatrix<f64>,
 }
 
+impl Information {
+    /// Of a density that is 1 everywhere.
+    pub(crate) fn zero(dimension: usize) -> Self {
+        Self {
+            density: Density::ONE,
+            gradient: DVector::zeros(dimension),
+            precision: DMatrix::zeros(dimension, dimension),
+        }
+    }
+
+    /// Multiplies the density by a power of another, of some of the
+    /// coordinates.
+    pub(crate) fn add(&mut self, other: &Self, places: &[usize], power: f64) {
+        self.density.multiply(&other.density, power);
+        for (i, &row) in places.iter().enumerate() {
+            self.gradient[row] += power * other.gradient[i];
+            for (j, &column) in places.iter().enumerate() {
+                self.precision[(row, column)] +=
+                    power * other.precision[(i, j)];
+            }
+        }
+    }
+}
+
 /// Derivatives of the innovations, one column a datum.
 #[derive(Debug, Default)]
 struct Columns {

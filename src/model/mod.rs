@@ -7,6 +7,7 @@
 //! program; every program has it.
 
 mod alone;
+mod amount;
 mod assembled;
 mod information;
 mod listener;

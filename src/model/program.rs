@@ -92,6 +92,24 @@ impl Density {
         self.natural() + self.log_jacobian
     }
 
+    pub(super) const ONE: Self = Self {
+        log_prior: 0.0,
+        log_jacobian: 0.0,
+        log_likelihood: 0.0,
+        slides: 0,
+        rejected: None,
+    };
+
+    /// Multiplies by a power of another density; zero where either was
+    /// rejected.
+    pub(super) fn multiply(&mut self, other: &Self, power: f64) {
+        self.log_prior += power * other.log_prior;
+        self.log_jacobian += power * other.log_jacobian;
+        self.log_likelihood += power * other.log_likelihood;
+        self.slides += other.slides;
+        self.rejected = self.rejected.or(other.rejected);
+    }
+
     fn zero(reason: &'static str, slides: u64) -> Self {
         Self {
             log_prior: f64::NEG_INFINITY,

@@ -1,12 +1,11 @@
 //! A model with mechanisms added to it from outside.
 
+use super::amount::Amount;
 use super::number::Number;
 use super::program::Program;
-use super::run::{Label, Run};
-use crate::block::List;
+use super::run::Run;
 use crate::change::{Change, Mechanism, Unknown};
 use crate::error::Outcome;
-use crate::scalar::Real;
 
 /// A program under the changes of mechanisms; itself a program, so that every
 /// backend runs it and several nest.
@@ -63,11 +62,9 @@ impl<P: Program> Program for With<'_, P> {
         let mut names = self.names.iter();
         let mut change = Change { known: self.known, ..Change::default() };
         for (mechanism, unknowns) in &self.mechanisms {
-            let mut values = List::<Real<K>>::new();
-            for (unknown, name) in unknowns.iter().zip(&mut names) {
-                let label = Label::new(name, unknown.unit);
-                values.push(run.scalar(label, unknown.prior)?);
-            }
+            let amounts = unknowns.iter().zip(&mut names);
+            let amounts = amounts.map(|(of, name)| Amount::of(name, of));
+            let values = run.amounts(amounts)?;
             change = change.and(&K::change(*mechanism, &values));
         }
         run.under(&change, |run| self.program.run(run))

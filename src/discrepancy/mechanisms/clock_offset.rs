@@ -26,6 +26,11 @@ impl Candidate for ClockOffset {
         "The clock of the recording and the start of the motion do not agree."
     }
 
+    /// Every recording is started by itself.
+    fn is_each_events_own(&self) -> bool {
+        true
+    }
+
     fn unknowns(&self) -> Vec<Unknown> {
         vec![unknown("ahead", "s", AnyPrior::Normal(0.0, 1.0))]
     }

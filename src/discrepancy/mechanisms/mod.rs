@@ -183,18 +183,31 @@ fn or(amplitude: f64, words: [&'static str; 3]) -> &'static str {
 }
 
 fn unknown(name: &str, unit: &'static str, prior: AnyPrior) -> Unknown {
-    Unknown { name: name.to_owned(), unit, prior }
+    Unknown { name: name.to_owned(), unit, prior, until: None }
+}
+
+/// Where a stretch of the run begins, and how long it is: both uniform, from
+/// the distance between values to what is left of the run.
+fn stretch(
+    names: [&str; 2],
+    unit: &'static str,
+    [begin, end]: [f64; 2],
+    shortest: f64,
+) -> [Unknown; 2] {
+    let from = AnyPrior::Uniform(begin, end);
+    let length = AnyPrior::Uniform(shortest, end - begin);
+    let length = unknown(names[1], unit, length);
+    let until = Some(end);
+    [unknown(names[0], unit, from), Unknown { until, ..length }]
 }
 
 /// An amplitude, where its stretch begins, and how long that is.
 fn along_place(extent: &Extent, amplitude: Unknown) -> Vec<Unknown> {
     let Extent { begin, run, duration, step, .. } = *extent;
     let shortest = run * (step / duration).min(0.5);
-    vec![
-        amplitude,
-        unknown("from", "m", AnyPrior::Uniform(begin, begin + run)),
-        unknown("length", "m", AnyPrior::Uniform(shortest, run)),
-    ]
+    let names = ["from", "length"];
+    let [from, length] = stretch(names, "m", [begin, begin + run], shortest);
+    vec![amplitude, from, length]
 }
 
 /// A rate added along the whole run.

@@ -1,6 +1,6 @@
 //! A force during a window of time.
 
-use super::{FORCE, Rate, between, or, unknown};
+use super::{FORCE, Rate, between, or, stretch, unknown};
 use crate::change::{
     Candidate, Change, Family, Missing, Noun, Reach, Unknown,
 };
@@ -37,12 +37,9 @@ impl Candidate for Surge {
     fn unknowns(&self) -> Vec<Unknown> {
         let amplitude = AnyPrior::Normal(0.0, FORCE);
         let Extent { duration, step, .. } = self.extent;
-        let lasts = AnyPrior::Uniform(step.min(0.5 * duration), duration);
-        vec![
-            unknown("force", "m/s2", amplitude),
-            unknown("from", "s", AnyPrior::Uniform(0.0, duration)),
-            unknown("lasts", "s", lasts),
-        ]
+        let (names, shortest) = (["from", "lasts"], step.min(0.5 * duration));
+        let [from, lasts] = stretch(names, "s", [0.0, duration], shortest);
+        vec![unknown("force", "m/s2", amplitude), from, lasts]
     }
 
     fn coordinate(&self) -> Option<Axis> {

@@ -1,9 +1,9 @@
 //! Several recordings together: one program over several events.
 //!
 //! Each event keeps its own noise, and its own friction law unless one is
-//! shared. A mechanism of the physics is the same in all of them, or each
-//! event has an amount of its own about a common one; what belongs to a
-//! start, a sensor or a noise is each event's own. `Run::of_event` tells
+//! shared. A mechanism of the physics or of the sensor is the same in all of
+//! them, or each event has an amount of its own about a common one; what
+//! belongs to a start, a clock or a noise is each event's own. `Run::of_event` tells
 //! which event's body runs, so that of a change with a part for each event
 //! each sees its own, and fits know nothing of it.
 
@@ -15,7 +15,7 @@ pub use per_event::PerEvent;
 pub use pooled::Pooled;
 
 use crate::block::List;
-use crate::change::{Family, Mechanism, Unknown};
+use crate::change::{Mechanism, Unknown};
 use crate::error::{Error, Outcome, Result, Stop};
 use crate::model::{Assembled, Number, Program, Run};
 use crate::observe::Extent;
@@ -33,7 +33,8 @@ pub struct Together {
     shared_friction: bool,
 }
 
-/// How far a mechanism of the physics is the same in all events.
+/// How far a mechanism of the physics or of a sensor is the same in all
+/// events.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sharing {
     /// The same amplitude at the same places.
@@ -87,8 +88,8 @@ impl Together {
         Extent::of_all(self.events.iter().map(Assembled::event))
     }
 
-    /// Every mechanism that applies: those of the physics to all events, with
-    /// amounts shared as told; the others to each on its own.
+    /// Every mechanism that applies: those of the physics and of sensors to
+    /// all events, with amounts shared as told; the others to each on its own.
     pub fn catalogue(&self, sharing: Sharing) -> Vec<Box<dyn Mechanism>> {
         catalogue(&self.extent(), &[])
             .into_iter()
@@ -129,29 +130,34 @@ impl Together {
     }
 
     /// A mechanism of the catalogue as it is for several events; `None` where
-    /// a law of any has it, or the noise or the sensor of all.
+    /// the model of any has what is shared, or of all what is each one's own.
     fn spread(
         &self,
         mechanism: Box<dyn Mechanism>,
         sharing: Sharing,
     ) -> Option<Box<dyn Mechanism>> {
-        match (mechanism.family(), sharing) {
-            (Family::Physics, _) if self.has(mechanism.as_ref()) => None,
-            (Family::Physics, Sharing::Shared) => Some(mechanism),
-            (Family::Physics, Sharing::Pooled) => {
+        match sharing {
+            _ if mechanism.is_each_events_own() => {
+                self.each(mechanism.as_ref())
+            }
+            _ if self.has(mechanism.as_ref()) => None,
+            Sharing::Shared => Some(mechanism),
+            Sharing::Pooled => {
                 Some(Box::new(Pooled::new(mechanism, &self.labels)))
             }
-            _ => {
-                let label = mechanism.label();
-                let of = |event: &Assembled| {
-                    let extent = event.event().extent();
-                    find(&label, &extent, &event.blocks()).ok()
-                };
-                let each = self.events.iter().map(of).collect();
-                let own = PerEvent::new(each, &self.labels)?;
-                Some(Box::new(own))
-            }
         }
+    }
+
+    /// A mechanism in an amount of each event's own, where its model has none.
+    fn each(&self, mechanism: &dyn Mechanism) -> Option<Box<dyn Mechanism>> {
+        let label = mechanism.label();
+        let of = |event: &Assembled| {
+            let extent = event.event().extent();
+            find(&label, &extent, &event.blocks()).ok()
+        };
+        let each = self.events.iter().map(of).collect();
+        let own = PerEvent::new(each, &self.labels)?;
+        Some(Box::new(own))
     }
 }
 
@@ -237,6 +243,9 @@ macro_rules! says_as {
         fn family(&self) -> Family {
             self.$inner().family()
         }
+        fn is_each_events_own(&self) -> bool {
+            self.$inner().is_each_events_own()
+        }
         fn noun(&self, amplitude: f64) -> Noun {
             self.$inner().noun(amplitude)
         }
@@ -245,9 +254,6 @@ macro_rules! says_as {
         }
         fn unknowns(&self) -> Vec<Unknown> {
             self.unknowns.clone()
-        }
-        fn leading(&self) -> usize {
-            self.$inner().leading()
         }
         fn coordinate(&self) -> Option<Axis> {
             self.$inner().coordinate()

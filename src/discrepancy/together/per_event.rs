@@ -1,5 +1,6 @@
 //! A mechanism that is each event's own.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::{of_event, says_as};
@@ -55,6 +56,16 @@ impl PerEvent {
 
 impl Candidate for PerEvent {
     says_as!(one);
+
+    fn amplitudes(&self) -> Vec<Range<usize>> {
+        let mut next = 0;
+        let of = |own: &Own| {
+            let all = next..next + own.count;
+            next = all.end;
+            all
+        };
+        self.each.iter().map(of).collect()
+    }
 }
 
 impl<K: ChangeKind> ChangeOf<K> for PerEvent {

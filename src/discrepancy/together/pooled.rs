@@ -1,5 +1,6 @@
 //! A mechanism with amplitudes about a common one.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::{of_event, says_as};
@@ -45,12 +46,17 @@ impl Pooled {
             _ => (false, RATIO, "1"),
         };
         let spread = AnyPrior::HalfNormal(scale);
-        unknowns.push(Unknown { name: "spread".into(), unit, prior: spread });
+        let one = |name: &str, unit, prior| Unknown {
+            name: name.into(),
+            unit,
+            prior,
+            until: None,
+        };
+        unknowns.push(one("spread", unit, spread));
         let common = unknowns.len();
         unknowns.extend(labels.iter().map(|label| {
             let prior = AnyPrior::Normal(0.0, 1.0);
-            let name = "deviation".into();
-            of_event(&Unknown { name, unit: "1", prior }, label)
+            of_event(&one("deviation", "1", prior), label)
         }));
         let inner = Arc::from(inner);
         Self { inner, unknowns, common, first: 0, signed }
@@ -76,6 +82,10 @@ impl Pooled {
 
 impl Candidate for Pooled {
     says_as!(inner);
+
+    fn amplitudes(&self) -> Vec<Range<usize>> {
+        self.inner.amplitudes()
+    }
 }
 
 impl<K: ChangeKind> ChangeOf<K> for Pooled {

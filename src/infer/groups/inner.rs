@@ -9,15 +9,13 @@ use crate::infer::descent::{Peak, climb_holding};
 use crate::infer::log_sum_exp;
 use crate::infer::mixture::Mixture;
 use crate::infer::peaks::Peaks;
-use crate::infer::smc::log_target;
+use crate::infer::smc::{PRIOR_SHARE, blended, log_target, systematic};
 use crate::infer::start::drawn;
 use crate::model::{Point, Posterior, Slice};
 use crate::seed::{Rng, Seed};
 
 /// How many draws estimate what a group holds at given common coordinates.
 const INNER: usize = 40;
-/// The share of these that is drawn from the prior.
-const PRIOR_SHARE: f64 = 0.1;
 /// How many climbs from draws of the prior look for other modes of a group
 /// there, and the effective share at which its mixture is good enough.
 const STARTS: usize = 4;
@@ -147,13 +145,12 @@ impl<'a> Inner<'a> {
         if total == f64::NEG_INFINITY {
             return Ok(total);
         }
-        let mut left = rng.random::<f64>();
-        let chosen = logs.iter().position(|log| {
-            left -= (log - total).exp();
-            left < 0.0
-        });
-        for (&i, z) in self.own.iter().zip(&draws[chosen.unwrap_or(0)]) {
-            whole[self.group.places[i]] = *z;
+        let weights: Vec<f64> =
+            logs.iter().map(|log| (log - total).exp()).collect();
+        for chosen in systematic(&weights, 1, rng) {
+            for (&i, z) in self.own.iter().zip(&draws[chosen]) {
+                whole[self.group.places[i]] = *z;
+            }
         }
         Ok(total - (INNER as f64).ln())
     }
@@ -186,10 +183,9 @@ impl<'a> Inner<'a> {
         if target == f64::NEG_INFINITY {
             return Ok(target);
         }
-        let share = proposal.prior_share();
         let before = density.log_prior + density.log_jacobian - prior;
-        let fitted = (1.0 - share).ln() + proposal.log_density(own);
-        let base = log_sum_exp([fitted, share.ln() + before].into_iter());
+        let fitted = proposal.log_density(own);
+        let base = blended(proposal.prior_share(), before, fitted);
         Ok(target - prior - base)
     }
 }

@@ -10,13 +10,14 @@
 //! ```
 //!
 //! With nothing in common Z is the product of what each group has alone. Else
+//! a proposal for all coordinates at once may do, as with two events; with
+//! five of four parameters each, the poor tails of every one multiply. Then
 //! theta is drawn from a mixture, as [`Peaks`] does with all coordinates, and
 //! every Z_i(theta) is estimated by importance sampling of its own: a product
 //! of unbiased estimates leaves the estimate of Z unbiased (Tran, Scharth,
-//! Gunawan, Kohn, Brown, Hawkins 2021). A proposal for all coordinates at once
-//! fails instead: with five events of four parameters each, the poor tails of
-//! every one multiply.
+//! Gunawan, Kohn, Brown, Hawkins 2021).
 
+mod assembly;
 mod inner;
 mod region;
 
@@ -26,7 +27,9 @@ use rayon::prelude::*;
 
 use super::importance::ImportanceSampling;
 use super::part::Part;
-use super::peaks::{ENOUGH, Peaks, ROUNDS, Ridge, is_good, mixture, taught};
+use super::peaks::{
+    AMPLE, ENOUGH, Peaks, ROUNDS, Ridge, is_good, mixture, taught,
+};
 use super::smc::{Base, Particle, population};
 use super::{Backend, Evidence, Inference, Progress, draws_of};
 use crate::draws::Draws;
@@ -34,6 +37,7 @@ use crate::error::{Error, Result};
 use crate::model::Posterior;
 use crate::seed::{Rng, Seed};
 
+use assembly::Assembly;
 use inner::Inner;
 use region::Region;
 
@@ -148,8 +152,13 @@ impl Peaks {
         seed: Seed,
         progress: &dyn Progress,
     ) -> Result<Inference> {
-        let parts =
-            self.parts(grouped.whole, &common.places, seed.child(0))?;
+        let assembly = Assembly::new(grouped, common);
+        let whole = Posterior::new(&assembly)?;
+        let parts = self.parts(&whole, seed.child(0))?;
+        let joint = self.settled_from(&whole, &parts, AMPLE, seed.child(2))?;
+        if let Some((found, seed)) = joint.found {
+            return ImportanceSampling::conclude(grouped.whole, &found, seed);
+        }
         let marginals: Vec<Part> =
             parts.iter().map(|part| part.marginal(&common.places)).collect();
         let mut mixture = mixture(&marginals)?;
