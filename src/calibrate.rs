@@ -189,6 +189,11 @@ fn parameters(
         .map(|(i, s)| {
             let (_, prior) = priors[i];
             let curve = curve(prior, draws, i);
+            // A length's prior is another wherever the stretch begins.
+            let (also, alone) = match model.ends_by(i) {
+                Some(end) => (format!(", ending by {end:.4}"), Vec::new()),
+                None => (String::new(), prior_curve(prior, &curve)),
+            };
             ParameterReport {
                 name: s.name.clone(),
                 unit: s.unit.clone(),
@@ -205,8 +210,8 @@ fn parameters(
                 ess_bulk: s.ess_bulk,
                 ess_tail: s.ess_tail,
                 mcse_mean: s.mcse_mean,
-                prior_text: prior.to_string(),
-                prior_density: prior_curve(prior, &curve),
+                prior_text: format!("{prior}{also}"),
+                prior_density: alone,
                 posterior_density: curve,
                 chains: draws.column(i).iter().map(|c| thin(c)).collect(),
                 pooled: rows.iter().map(|row| row[i]).collect(),

@@ -240,6 +240,12 @@ fn a_diagnosis_writes_an_event_that_runs() {
     };
     let apart = of(&again, "mean") - of(&json, "mean");
     assert!(apart.abs() < of(&json, "sd") / 3.0, "{apart}");
+    // Where nothing is added, the events of before stay, and it is said.
+    let arguments = ["diagnose", event, "--odds", "none=1e30", "--out", out];
+    let output = couloir(&arguments);
+    assert!(output.status.success(), "{}", said(&output));
+    assert!(printed(&output).contains("corrected: of an earlier diagnosis"));
+    assert_eq!(read("corrected/event.toml"), text);
 }
 
 #[test]

@@ -12,7 +12,7 @@ use couloir::discrepancy::{
 };
 use couloir::draws::summarise;
 use couloir::infer::{Backend, Peaks, Quiet, Smc};
-use couloir::model::{Assembled, Point, Posterior, Program, With};
+use couloir::model::{Assembled, Model, Point, Posterior, Program, With};
 use couloir::noise::{self, Iid, Noise};
 use couloir::physics::Track;
 use couloir::physics::friction::Laws;
@@ -96,6 +96,43 @@ fn mechanisms_of_an_event_file_are_those_put_on_from_outside() {
     assert!(inside.rest(&all).unwrap().is_none());
 }
 
+#[test]
+fn a_stretch_ends_within_the_run_unless_the_file_has_a_prior() {
+    let plain = slide("one", 0.0, 1);
+    let extent = plain.event().extent();
+    let patch = FrictionPatch { extent };
+    let outside = With::new(&plain, &[&patch]);
+    let key = "friction-patch.length".to_owned();
+    let prior = AnyPrior::Uniform(1.0, extent.run);
+    let given = BTreeMap::from([(key, prior)]);
+    let [inside, free] = [BTreeMap::new(), given].map(|priors| {
+        let found = find("friction-patch", &extent, &[]).unwrap();
+        let plain = slide("one", 0.0, 1);
+        plain.with_mechanisms(vec![found], &priors).unwrap()
+    });
+    let own = [0.26, 0.1];
+    let log_prior = |program: &dyn Model, values: &[&[f64]]| -> f64 {
+        let posterior = Posterior::new(program).unwrap();
+        let values = values.concat();
+        posterior.density(Point::Natural(&values)).unwrap().log_prior
+    };
+    let half = extent.begin + 0.5 * extent.run;
+    for (share, is_possible) in [(0.45, true), (0.55, false)] {
+        let amounts = [0.14, half, share * extent.run];
+        let a = log_prior(&outside, &[&amounts, &own]);
+        let b = log_prior(&inside, &[&own, &amounts]);
+        assert_eq!(a.is_finite(), is_possible, "{share}");
+        assert!(a == b || (a - b).abs() < 1e-12, "{a} {b}");
+        assert!(log_prior(&free, &[&own, &amounts]).is_finite());
+    }
+    let before = [0.26, 0.1, 0.14, half];
+    let middle =
+        |model: &Assembled| model.middle(&before).unwrap() / extent.run;
+    assert!(middle(&inside) < 0.3 && middle(&free) > 0.5);
+    assert_eq!(inside.ends_by(4), Some(extent.begin + extent.run));
+    assert_eq!(free.ends_by(4), None);
+}
+
 /// A slide whose model has a mechanism already.
 fn having(label: &str) -> Assembled {
     let plain = slide("one", 0.0, 1);
@@ -152,6 +189,29 @@ fn no_variant_of_what_a_model_has_is_looked_for() {
 }
 
 #[test]
+fn sensors_are_shared_where_they_record_the_same() {
+    let names = |events: [Assembled; 2], name: &str| -> Vec<String> {
+        let together = Together::new(events.into(), false).unwrap();
+        let all = together.catalogue(Sharing::Shared);
+        let found = all.iter().find(|m| m.name() == name).unwrap();
+        found.unknowns().into_iter().map(|u| u.name).collect()
+    };
+    let mixed = || {
+        let [velocity, _] = both();
+        let times: Vec<f64> = (1..=50).map(|i| 0.2 * f64::from(i)).collect();
+        let values = times.iter().map(|t| 1.5 * t * t).collect();
+        let track = Track::incline(28.0, 900.0).unwrap();
+        let event = Event::on(track).named("seen 2");
+        let event = event.position(Series::position(times, values).unwrap());
+        [velocity, of(event.build().unwrap())]
+    };
+    assert_eq!(names(both(), "velocity-scale"), ["excess"]);
+    assert_eq!(names(mixed(), "friction-patch")[0], "delta_mu");
+    let own = names(mixed(), "velocity-scale");
+    assert!(own.len() == 2 && own[0].ends_with(".excess"), "{own:?}");
+}
+
+#[test]
 fn with_nothing_shared_the_log_evidence_adds_up() {
     let peaks = Peaks::default();
     let of = |model: &Assembled, seed| -> Fit {
@@ -184,6 +244,7 @@ fn what_events_have_in_common_is_integrated_as_all_at_once() {
         ("friction-step", Sharing::Shared, true),
         ("friction-step", Sharing::Pooled, false),
         ("heavy-tails", Sharing::Shared, true),
+        ("friction-patch", Sharing::Shared, true),
     ];
     for (name, sharing, one_law) in cases {
         let together = Together::new(both().into(), one_law).unwrap();

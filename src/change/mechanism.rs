@@ -53,10 +53,10 @@ pub struct Unknown {
     pub unit: &'static str,
     /// Its prior, scaled to the event.
     pub prior: AnyPrior,
-    /// Where a stretch ends at the latest whose length this is, the unknown
-    /// before it being where it begins: the prior, a uniform one, reaches no
-    /// further than what is left then. A stretch that would end later is none:
-    /// what differs up to the last value is a step.
+    /// Where a stretch ends at the latest whose length this is; the unknown
+    /// before it is where it begins. The prior, a uniform one, reaches to what
+    /// is left then, or to twice the shortest length where less is left. What
+    /// differs up to the last value is a step.
     pub until: Option<f64>,
 }
 

@@ -53,11 +53,10 @@ impl Arguments {
         Ok(tell(&model, &values, &times, &states, rest))
     }
 
-    /// The parameters' values: those set, the prior's median for the rest.
+    /// The parameters' values: those set, the prior's middle for the rest.
     fn values(&self, model: &Assembled) -> Result<Vec<f64>> {
         let names: Vec<&str> = model.priors().map(|(name, _)| name).collect();
-        let mut values: Vec<Option<f64>> =
-            model.priors().map(|(_, prior)| prior.quantile(0.5)).collect();
+        let mut set: Vec<Option<f64>> = vec![None; names.len()];
         for text in &self.values {
             let (name, value) = text.split_once('=').ok_or_else(|| {
                 Error::input(format!("--set {text:?}: expected NAME=VALUE"))
@@ -72,21 +71,25 @@ impl Arguments {
                 )));
             };
             let value = value.trim().parse::<f64>().ok();
-            values[place] = value.filter(|v| v.is_finite());
-            if values[place].is_none() {
+            set[place] = value.filter(|v| v.is_finite());
+            if set[place].is_none() {
                 return Err(Error::input(format!(
                     "--set {text:?}: expected a finite number after ="
                 )));
             }
         }
-        let missing = values.iter().position(Option::is_none);
-        if let Some(i) = missing.filter(|i| model.is_of_motion(*i)) {
-            return Err(Error::input(format!(
-                "{} has a flat prior and no middle; give it with --set {}=..",
-                names[i], names[i]
-            )));
+        let mut values = Vec::with_capacity(names.len());
+        for (i, (set, name)) in set.iter().zip(&names).enumerate() {
+            let value = set.or_else(|| model.middle(&values));
+            if value.is_none() && model.is_of_motion(i) {
+                return Err(Error::input(format!(
+                    "{name} has a flat prior and no middle; give it with \
+                     --set {name}=.."
+                )));
+            }
+            values.push(value.unwrap_or(0.0));
         }
-        Ok(values.into_iter().map(|v| v.unwrap_or(0.0)).collect())
+        Ok(values)
     }
 }
 

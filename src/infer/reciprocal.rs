@@ -81,14 +81,21 @@ impl ReciprocalImportance {
 
 /// How much of g lies beyond the bounds of the parameters, one by one: there
 /// the posterior has no draws, and what g weighs there is missing from the
-/// mean, which the ratios at the draws cannot show.
+/// mean, which the ratios at the draws cannot show. Bounds that follow from
+/// other parameters reach at least as far as the draws do.
 fn share_outside(posterior: &Posterior<'_>, draws: &Draws) -> f64 {
     let (mean, covariance) = (draws.mean(), draws.covariance());
     let parameters = posterior.parameters().iter().enumerate();
     parameters
         .map(|(i, parameter)| {
             let width = (2.0 * covariance[(i, i)]).sqrt();
-            let (low, high) = parameter.bounds;
+            let (low, high) = draws
+                .column(i)
+                .iter()
+                .flatten()
+                .fold(parameter.bounds, |(low, high), x| {
+                    (low.min(*x), high.max(*x))
+                });
             let below = erfc((mean[i] - low) / width);
             let above = erfc((high - mean[i]) / width);
             0.5 * (below + above)

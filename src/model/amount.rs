@@ -6,7 +6,7 @@ use crate::block::List;
 use crate::change::Unknown;
 use crate::error::Stop;
 use crate::prior::{AnyPrior, Uniform};
-use crate::scalar::Real;
+use crate::scalar::{Kind, Plain, Real};
 
 /// A parameter of a mechanism; `until` as of its [`Unknown`].
 #[derive(Debug, Clone, Copy)]
@@ -20,6 +20,19 @@ impl<'a> Amount<'a> {
     pub(super) fn of(name: &'a str, unknown: &Unknown) -> Self {
         let Unknown { unit, prior, until, .. } = *unknown;
         Self { label: Label::new(name, unit), prior, until }
+    }
+
+    /// The middle of its prior, given the value before it; `None` for a flat
+    /// one.
+    pub(super) fn middle(&self, before: Option<f64>) -> Option<f64> {
+        match (self.prior, self.until, before) {
+            (AnyPrior::Uniform(shortest, _), Some(end), Some(from)) => {
+                let from = Real::<Plain>::new(from);
+                let longest = longest(shortest, end, from).value();
+                Some(f64::midpoint(shortest, longest))
+            }
+            _ => self.prior.quantile(0.5),
+        }
     }
 }
 
@@ -46,13 +59,60 @@ impl<K: Number> Run<'_, K> {
         let Amount { label, prior, until } = amount;
         match (prior, until, before) {
             (AnyPrior::Uniform(shortest, _), Some(end), Some(&from)) => {
-                // At the very end the shortest one has to have room.
-                let left = Real::new(end) - from;
-                let least = Real::new(2.0 * shortest);
-                let longest = if left > least { left } else { least };
+                let longest = longest(shortest, end, from);
                 self.scalar(label, Uniform::new(shortest, longest))
             }
             _ => self.scalar(label, prior),
+        }
+    }
+}
+
+/// The longest that a stretch can be: up to the end of the run, and at the very
+/// end long enough for the shortest one to have room.
+fn longest<K: Kind>(shortest: f64, end: f64, from: Real<K>) -> Real<K> {
+    let left = Real::new(end) - from;
+    let least = Real::new(2.0 * shortest);
+    if left > least { left } else { least }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Outcome;
+    use crate::model::{Point, Posterior, Program};
+    use crate::seed::Seed;
+
+    /// A stretch from somewhere in 0 to 10 on, at least 1 long.
+    struct Stretch;
+
+    impl Program for Stretch {
+        fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
+            let amount = |name, low, until| Amount {
+                label: Label::new(name, "m"),
+                prior: AnyPrior::Uniform(low, 10.0),
+                until,
+            };
+            let from = amount("from", 0.0, None);
+            run.amounts([from, amount("length", 1.0, Some(10.0))]).map(|_| ())
+        }
+    }
+
+    #[test]
+    fn a_stretch_ends_within_the_run_and_its_prior_is_proper() {
+        let posterior = Posterior::new(&Stretch).unwrap();
+        let density = |x: [f64; 2]| {
+            posterior.density(Point::Natural(&x)).unwrap().log_prior
+        };
+        // 1/10 for where it begins, and 1/5 of 1 to 6, 1 of 1 to 2.
+        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} {b}");
+        near(density([4.0, 3.0]), -(50.0_f64.ln()));
+        near(density([9.5, 1.7]), -(10.0_f64.ln()));
+        assert_eq!(density([4.0, 6.1]), f64::NEG_INFINITY);
+        let mut rng = Seed::new(1).rng();
+        for _ in 0..1000 {
+            let (_, drawn) = posterior.draw_prior(&mut rng).unwrap();
+            let [from, length] = drawn.natural[..] else { panic!() };
+            assert!(from + length <= f64::max(10.0, from + 2.0));
         }
     }
 }

@@ -308,6 +308,19 @@ impl Assembled {
     pub fn priors(&self) -> impl Iterator<Item = (&str, &AnyPrior)> {
         self.unknowns.iter().map(|u| (u.name.as_str(), &u.prior))
     }
+
+    /// Where a stretch ends at the latest whose length this parameter is;
+    /// `None` where it is none, or has a prior of its own.
+    pub fn ends_by(&self, parameter: usize) -> Option<f64> {
+        self.unknowns.get(parameter).and_then(|unknown| unknown.until)
+    }
+
+    /// The middle of the prior of the parameter that comes after given
+    /// values; `None` for a flat one.
+    pub fn middle(&self, before: &[f64]) -> Option<f64> {
+        let unknown = self.unknowns.get(before.len())?;
+        unknown.amount().middle(before.last().copied())
+    }
 }
 
 impl Assembled {

@@ -12,8 +12,9 @@ use crate::observe::Series;
 use crate::prior::Prior;
 use crate::scalar::{Plain, Real};
 
-/// A model at given values of some of its parameters, whose priors depend on no
-/// others: a model of those. Its density is p(unknown, data | known).
+/// A model at given values of some of its parameters, whose priors depend on
+/// none of the unknown ones: a model of those. Its density is
+/// p(unknown, data | known).
 pub struct Slice<'a> {
     model: &'a dyn Model,
     /// All parameters, those known at their values: on the line, as named.

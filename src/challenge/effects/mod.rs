@@ -148,8 +148,9 @@ pub(super) struct Scene<'a> {
     pub(super) ground: &'a Ground,
     /// The upper quartile of the speeds \[m/s\].
     pub(super) upper: f64,
-    /// Where the first mass starts, and where the last does \[m\].
+    /// Where the first mass starts \[m\].
     pub(super) top: f64,
+    /// Where the last mass starts \[m\].
     pub(super) from: f64,
     /// What all reach while recorded \[m\].
     pub(super) to: f64,

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::challenge::ground::Shape;
-use crate::challenge::motion::{Law, STEP, slide};
+use crate::challenge::motion::{Law, Moment, STEP, slide};
 use crate::seed::Seed;
 
 const LAW: Law = Law::Coulomb { mu: 0.35 };
@@ -12,9 +12,9 @@ fn ground() -> Ground {
 }
 
 fn scene(ground: &Ground, size: f64) -> Scene<'_> {
-    let (upper, from, to, duration) = (20.0, 50.0, 180.0, 12.0);
+    let (upper, top, from, to, duration) = (20.0, 30.0, 50.0, 180.0, 12.0);
     let other = size;
-    Scene { size, other, ground, upper, top: from, from, to, duration }
+    Scene { size, other, ground, upper, top, from, to, duration }
 }
 
 /// Speeds and the errors upon them, with an effect of a size.
@@ -100,4 +100,23 @@ fn half_the_step_gives_the_same_speeds_with_every_effect() {
             assert!(change.abs() < 1e-4, "{} {t} {change}", kind.name);
         }
     }
+}
+
+#[test]
+fn hardening_begins_where_the_first_mass_starts() {
+    let ground = ground();
+    let at = |s: f64| -> Vec<f64> {
+        let changed = (1..=20).map(|seed| {
+            let mut rng = Seed::new(seed).rng();
+            let make = friction_hardening::KIND.make;
+            let effect = make(&scene(&ground, 0.2), &mut rng).unwrap();
+            let (u, t) = (10.0, 0.0);
+            effect.mu(0.3, &Moment { s, u, t, place: s, time: t })
+        });
+        changed.collect()
+    };
+    assert!(at(30.0).iter().all(|mu| *mu == 0.3));
+    // Of about half it is distance that hardens.
+    let changed = at(50.0).into_iter().filter(|mu| *mu > 0.31).count();
+    assert!((4..=16).contains(&changed), "{changed}");
 }

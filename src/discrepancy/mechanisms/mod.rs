@@ -186,8 +186,8 @@ fn unknown(name: &str, unit: &'static str, prior: AnyPrior) -> Unknown {
     Unknown { name: name.to_owned(), unit, prior, until: None }
 }
 
-/// Where a stretch of the run begins, and how long it is: both uniform, from
-/// the distance between values to what is left of the run.
+/// Where a stretch of the run begins, uniform, and how long it is: uniform from
+/// the shortest that values can show to what is left of the run.
 fn stretch(
     names: [&str; 2],
     unit: &'static str,

@@ -3,9 +3,10 @@
 //! Each event keeps its own noise, and its own friction law unless one is
 //! shared. A mechanism of the physics or of the sensor is the same in all of
 //! them, or each event has an amount of its own about a common one; what
-//! belongs to a start, a clock or a noise is each event's own. `Run::of_event` tells
-//! which event's body runs, so that of a change with a part for each event
-//! each sees its own, and fits know nothing of it.
+//! belongs to a start, a clock or a noise is each event's own, and so are
+//! sensors that do not record the same quantity. `Run::of_event` tells which
+//! event's body runs, so that of a change with a part for each event each sees
+//! its own, and fits know nothing of it.
 
 mod labels;
 mod per_event;
@@ -15,7 +16,7 @@ pub use per_event::PerEvent;
 pub use pooled::Pooled;
 
 use crate::block::List;
-use crate::change::{Mechanism, Unknown};
+use crate::change::{Family, Mechanism, Unknown};
 use crate::error::{Error, Outcome, Result, Stop};
 use crate::model::{Assembled, Number, Program, Run};
 use crate::observe::Extent;
@@ -137,7 +138,7 @@ impl Together {
         sharing: Sharing,
     ) -> Option<Box<dyn Mechanism>> {
         match sharing {
-            _ if mechanism.is_each_events_own() => {
+            _ if self.is_each_ones(mechanism.as_ref()) => {
                 self.each(mechanism.as_ref())
             }
             _ if self.has(mechanism.as_ref()) => None,
@@ -146,6 +147,23 @@ impl Together {
                 Some(Box::new(Pooled::new(mechanism, &self.labels)))
             }
         }
+    }
+
+    /// Whether no amount of it is common to the events: sensors may be one
+    /// and the same only where all record the same, on ground.
+    fn is_each_ones(&self, mechanism: &dyn Mechanism) -> bool {
+        let recorded = |event: &Assembled| {
+            let event = event.event();
+            let what = event.recordings().map(|s| (s.quantity(), s.window()));
+            (what.collect::<Vec<_>>(), event.extent().carried)
+        };
+        let alike = || {
+            let mut all = self.events.iter().map(recorded);
+            let first = all.next();
+            all.all(|other| Some(other) == first)
+        };
+        let sensor = mechanism.family() == Family::Measurement;
+        mechanism.is_each_events_own() || (sensor && !alike())
     }
 
     /// A mechanism in an amount of each event's own, where its model has none.

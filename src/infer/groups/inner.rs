@@ -147,10 +147,9 @@ impl<'a> Inner<'a> {
         }
         let weights: Vec<f64> =
             logs.iter().map(|log| (log - total).exp()).collect();
-        for chosen in systematic(&weights, 1, rng) {
-            for (&i, z) in self.own.iter().zip(&draws[chosen]) {
-                whole[self.group.places[i]] = *z;
-            }
+        let chosen = &draws[systematic(&weights, 1, rng)[0]];
+        for (&i, z) in self.own.iter().zip(chosen) {
+            whole[self.group.places[i]] = *z;
         }
         Ok(total - (INNER as f64).ln())
     }

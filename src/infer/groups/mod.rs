@@ -84,7 +84,9 @@ impl Peaks {
         grouped.whole.require_proper("the mixture of peaks")?;
         match &grouped.common {
             None => self.product(grouped, seed, progress),
-            Some(common) => self.nested(grouped, common, seed, progress),
+            Some(common) => {
+                self.within_common(grouped, common, seed, progress)
+            }
         }
     }
 
@@ -144,28 +146,44 @@ impl Peaks {
         Self { from, ridges: ridges.collect(), ..self.clone() }
     }
 
-    /// Groups with something in common.
-    fn nested(
+    /// Groups with something in common: a proposal for all coordinates at
+    /// once, and where that does not do, one within the other.
+    fn within_common(
         &self,
         grouped: &Grouped<'_>,
         common: &Group<'_>,
         seed: Seed,
         progress: &dyn Progress,
     ) -> Result<Inference> {
+        progress.begin("importance sampling", None);
         let assembly = Assembly::new(grouped, common);
         let whole = Posterior::new(&assembly)?;
         let parts = self.parts(&whole, seed.child(0))?;
         let joint = self.settled_from(&whole, &parts, AMPLE, seed.child(2))?;
         if let Some((found, seed)) = joint.found {
-            return ImportanceSampling::conclude(grouped.whole, &found, seed);
+            let whole = grouped.whole;
+            let made = ImportanceSampling::conclude(whole, &found, seed)?;
+            if made.warnings.is_empty() {
+                return Ok(made);
+            }
         }
+        self.nested(grouped, common, &parts, seed.child(1), progress)
+    }
+
+    /// What is in common, and each group given that.
+    fn nested(
+        &self,
+        grouped: &Grouped<'_>,
+        common: &Group<'_>,
+        parts: &[Part],
+        seed: Seed,
+        progress: &dyn Progress,
+    ) -> Result<Inference> {
         let marginals: Vec<Part> =
             parts.iter().map(|part| part.marginal(&common.places)).collect();
         let mut mixture = mixture(&marginals)?;
         let inner = Inner::all(grouped, common);
-        let seed = seed.child(1);
-        let regions = self.regions(&parts, common, &inner, seed.child(0))?;
-        progress.begin("importance sampling", None);
+        let regions = self.regions(parts, common, &inner, seed.child(0))?;
         let mut round = 0;
         loop {
             round += 1;
@@ -247,3 +265,6 @@ fn completed(
     let z = theta.z.clone();
     Ok((theta.clone().completed(z, held), theta.completed(line, held)))
 }
+
+#[cfg(test)]
+mod tests;
