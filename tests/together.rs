@@ -72,12 +72,10 @@ fn mechanisms_of_an_event_file_are_those_put_on_from_outside() {
     let extent = plain.event().extent();
     let patch = FrictionPatch { extent };
     let outside = With::new(&plain, &[&patch]);
-    let found = find("friction-patch", &extent, &plain.blocks()).unwrap();
     let key = "friction-patch.delta_mu".to_owned();
     let prior = AnyPrior::parse("Normal(0.1, 0.2)").unwrap();
     let priors = BTreeMap::from([(key, prior)]);
-    let inside =
-        slide("one", 0.0, 1).with_mechanisms(vec![found], &priors).unwrap();
+    let inside = having("friction-patch", &priors);
     inside.check_priors(&priors).unwrap();
     assert_eq!(
         inside.priors().nth(2).unwrap().1.to_string(),
@@ -105,11 +103,8 @@ fn a_stretch_ends_within_the_run_unless_the_file_has_a_prior() {
     let key = "friction-patch.length".to_owned();
     let prior = AnyPrior::Uniform(1.0, extent.run);
     let given = BTreeMap::from([(key, prior)]);
-    let [inside, free] = [BTreeMap::new(), given].map(|priors| {
-        let found = find("friction-patch", &extent, &[]).unwrap();
-        let plain = slide("one", 0.0, 1);
-        plain.with_mechanisms(vec![found], &priors).unwrap()
-    });
+    let [inside, free] = [BTreeMap::new(), given]
+        .map(|priors| having("friction-patch", &priors));
     let own = [0.26, 0.1];
     let log_prior = |program: &dyn Model, values: &[&[f64]]| -> f64 {
         let posterior = Posterior::new(program).unwrap();
@@ -133,16 +128,16 @@ fn a_stretch_ends_within_the_run_unless_the_file_has_a_prior() {
     assert_eq!(free.ends_by(4), None);
 }
 
-/// A slide whose model has a mechanism already.
-fn having(label: &str) -> Assembled {
+/// A slide whose model has a mechanism already, under priors of a file.
+fn having(label: &str, priors: &BTreeMap<String, AnyPrior>) -> Assembled {
     let plain = slide("one", 0.0, 1);
     let found = find(label, &plain.event().extent(), &[]).unwrap();
-    plain.with_mechanisms(vec![found], &BTreeMap::new()).unwrap()
+    plain.with_mechanisms(vec![found], priors).unwrap()
 }
 
 #[test]
 fn what_a_model_has_is_not_looked_for_and_stays() {
-    let model = having("clock-offset");
+    let model = having("clock-offset", &BTreeMap::new());
     let options = Options::of(&model, 1);
     let found = diagnose(&model, model.event(), &options, &Quiet).unwrap();
     assert_eq!(found.verdict, Verdict::MissingPhysics);
@@ -165,7 +160,7 @@ fn what_a_model_has_is_not_looked_for_and_stays() {
 
 #[test]
 fn no_variant_of_what_a_model_has_is_looked_for() {
-    let model = having("friction-step(time)");
+    let model = having("friction-step(time)", &BTreeMap::new());
     let extent = model.event().extent();
     let names = |blocks: &[String]| -> Vec<&str> {
         let all = couloir::discrepancy::mechanisms::catalogue(&extent, blocks);
@@ -175,7 +170,8 @@ fn no_variant_of_what_a_model_has_is_looked_for() {
     assert!(!names(&model.blocks()).contains(&"friction-step"));
     // A force is shared by all events, a clock is each one's own.
     let together = |label: &str| -> Vec<String> {
-        let events = vec![having(label), slide("two", 40.0, 2)];
+        let events =
+            vec![having(label, &BTreeMap::new()), slide("two", 40.0, 2)];
         let together = Together::new(events, false).unwrap();
         let clock = together.catalogue(Sharing::Shared);
         let of = |name: &str| {

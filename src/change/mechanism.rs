@@ -60,6 +60,17 @@ pub struct Unknown {
     pub until: Option<f64>,
 }
 
+impl Unknown {
+    /// One that is no stretch's length.
+    pub fn new(
+        name: impl Into<String>,
+        unit: &'static str,
+        prior: AnyPrior,
+    ) -> Self {
+        Self { name: name.into(), unit, prior, until: None }
+    }
+}
+
 /// What something is called in a sentence: "a clock that is off".
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Noun {

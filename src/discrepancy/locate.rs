@@ -108,11 +108,9 @@ impl Candidate for FreeForm {
 
     fn unknowns(&self) -> Vec<Unknown> {
         (0..CELLS)
-            .map(|i| Unknown {
-                name: format!("wave[{}]", i + 1),
-                unit: "1",
-                prior: AnyPrior::Normal(0.0, 1.0),
-                until: None,
+            .map(|i| {
+                let prior = AnyPrior::Normal(0.0, 1.0);
+                Unknown::new(format!("wave[{}]", i + 1), "1", prior)
             })
             .collect()
     }

@@ -5,7 +5,7 @@ use super::run::{Label, Run};
 use crate::block::List;
 use crate::change::Unknown;
 use crate::error::Stop;
-use crate::prior::{AnyPrior, Uniform};
+use crate::prior::{AnyPrior, Prior as _, Uniform};
 use crate::scalar::{Kind, Plain, Real};
 
 /// A parameter of a mechanism; `until` as of its [`Unknown`].
@@ -22,16 +22,27 @@ impl<'a> Amount<'a> {
         Self { label: Label::new(name, unit), prior, until }
     }
 
+    /// The prior of a length that has to end within the run, given the amount
+    /// before it, where its stretch begins; `None` where its own prior holds.
+    fn left<K: Kind>(&self, before: Option<Real<K>>) -> Option<Uniform<K>> {
+        let (AnyPrior::Uniform(shortest, _), Some(end)) =
+            (self.prior, self.until)
+        else {
+            return None;
+        };
+        let left = Real::new(end) - before?;
+        // At the very end the shortest one has to have room.
+        let least = Real::new(2.0 * shortest);
+        let longest = if left > least { left } else { least };
+        Some(Uniform::new(shortest, longest))
+    }
+
     /// The middle of its prior, given the value before it; `None` for a flat
     /// one.
     pub(super) fn middle(&self, before: Option<f64>) -> Option<f64> {
-        match (self.prior, self.until, before) {
-            (AnyPrior::Uniform(shortest, _), Some(end), Some(from)) => {
-                let from = Real::<Plain>::new(from);
-                let longest = longest(shortest, end, from).value();
-                Some(f64::midpoint(shortest, longest))
-            }
-            _ => self.prior.quantile(0.5),
+        match self.left(before.map(Real::<Plain>::new)) {
+            Some(left) => left.quantile(0.5),
+            None => self.prior.quantile(0.5),
         }
     }
 }
@@ -56,23 +67,11 @@ impl<K: Number> Run<'_, K> {
         amount: Amount<'_>,
         before: Option<&Real<K>>,
     ) -> Result<Real<K>, Stop> {
-        let Amount { label, prior, until } = amount;
-        match (prior, until, before) {
-            (AnyPrior::Uniform(shortest, _), Some(end), Some(&from)) => {
-                let longest = longest(shortest, end, from);
-                self.scalar(label, Uniform::new(shortest, longest))
-            }
-            _ => self.scalar(label, prior),
+        match amount.left(before.copied()) {
+            Some(left) => self.scalar(amount.label, left),
+            None => self.scalar(amount.label, amount.prior),
         }
     }
-}
-
-/// The longest that a stretch can be: up to the end of the run, and at the very
-/// end long enough for the shortest one to have room.
-fn longest<K: Kind>(shortest: f64, end: f64, from: Real<K>) -> Real<K> {
-    let left = Real::new(end) - from;
-    let least = Real::new(2.0 * shortest);
-    if left > least { left } else { least }
 }
 
 #[cfg(test)]

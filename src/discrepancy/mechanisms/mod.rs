@@ -183,7 +183,7 @@ fn or(amplitude: f64, words: [&'static str; 3]) -> &'static str {
 }
 
 fn unknown(name: &str, unit: &'static str, prior: AnyPrior) -> Unknown {
-    Unknown { name: name.to_owned(), unit, prior, until: None }
+    Unknown::new(name, unit, prior)
 }
 
 /// Where a stretch of the run begins, uniform, and how long it is: uniform from
