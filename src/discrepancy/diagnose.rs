@@ -2,9 +2,7 @@
 
 use std::time::Instant;
 
-use rayon::prelude::*;
-
-use super::attribute::{Attribution, attribute};
+use super::attribute::attribute;
 use super::before_and_after::{Shown, improvement, pictured, show};
 use super::check::baseline;
 use super::choose::{Choice, Chosen, explained};
@@ -13,7 +11,7 @@ use super::fit::Fit;
 use super::judge::{
     Beforehand, check_odds, group, judge, separating, told, verdict,
 };
-use super::locate::{FreeForce, free_fit, locate};
+use super::locate::{FreeForce, free_fit, locate_all};
 use super::mechanisms::catalogue;
 use super::options::Options;
 use super::paste::corrected;
@@ -25,7 +23,6 @@ use crate::error::{Error, Result};
 use crate::infer::Progress;
 use crate::model::{Assembled, Program};
 use crate::observe::{Event, Extent};
-use crate::physics::forces::Axis;
 use crate::seed::Seed;
 
 /// Finds where a model and a recording differ and what was left out.
@@ -81,7 +78,8 @@ impl<P: Program> Subject<'_, P> {
         check_odds(&options.odds, all)?;
         let found = attribute(program, all, seed.child(0), progress)?;
         progress.begin("locating the mismatch", None);
-        let forces = self.locate(&found, seed)?;
+        let forces =
+            locate_all(program, &self.extent, &found.none, seed.child(10))?;
         let mut judged = judge(&found, all, &forces, &options.odds);
         let verdict = verdict(&judged);
         progress.begin("weighing pairs", None);
@@ -99,7 +97,7 @@ impl<P: Program> Subject<'_, P> {
             chosen.call(&mut judged, all);
         }
         progress.begin("showing", None);
-        let free = self.free_form(verdict, &forces, &found.none, seed)?;
+        let free = self.free_form(verdict, &forces, &found.none)?;
         let after = shown_after(chosen.as_ref(), free.as_ref(), all, seed);
         let told = self.told(&found.none, after.as_ref(), options, seed)?;
         let group = group(&judged);
@@ -144,31 +142,12 @@ impl<P: Program> Subject<'_, P> {
         verdict: Verdict,
         forces: &[FreeForce],
         none: &Fit,
-        seed: Seed,
     ) -> Result<Option<(Box<dyn Mechanism>, Fit)>> {
         if verdict != Verdict::Unexplained {
             return Ok(None);
         }
         let force = most_probable(forces)?;
-        let seed = seed.child(20);
-        free_fit(self.program, &self.extent, force, none, seed).map(Some)
-    }
-
-    /// The free-form force along every axis.
-    fn locate(
-        &self,
-        found: &Attribution,
-        seed: Seed,
-    ) -> Result<Vec<FreeForce>> {
-        [Axis::Place, Axis::Time, Axis::Speed]
-            .into_par_iter()
-            .enumerate()
-            .map(|(i, axis)| {
-                let seed = seed.child(10 + i as u64);
-                let own = found.none.own();
-                locate(self.program, &self.extent, axis, own, seed)
-            })
-            .collect()
+        free_fit(self.program, &self.extent, force, none).map(Some)
     }
 
     /// Before, after, and what both predict.

@@ -1,6 +1,7 @@
 //! A diagnosis to test with, of made-up numbers: a patch of higher friction
 //! from 132 to 187 m.
 
+use super::locate::Process;
 use super::mechanisms::find;
 use super::*;
 use crate::change::Noun;
@@ -171,13 +172,15 @@ fn force(axis: Axis, end: f64, middle: f64, log: f64) -> FreeForce {
     let at: Vec<f64> = (0..CELLS).map(|i| step * (i as f64 + 0.5)).collect();
     let hump = |x: f64| -0.95 * (-((x - middle) / (0.09 * end)).powi(4)).exp();
     FreeForce {
-        process: (20.0, 1.0),
+        process: Process(0.0, 0.0),
         axis,
         mean: at.iter().map(|x| hump(*x) + 0.1 * (x / step).sin()).collect(),
         sd: at.iter().map(|x| 0.12 + 0.2 * (x / end).powi(4)).collect(),
         width: 2.9,
         draws: vec![],
         log_bayes_factor: log,
+        se: 0.05,
+        own: vec![],
         at,
     }
 }

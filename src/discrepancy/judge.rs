@@ -130,7 +130,7 @@ fn unknown(forces: &[FreeForce], none: &Fit) -> Judged {
         noun: Noun::one(NOUN),
         kind: "unknown",
         log_evidence: log_mean(&logs),
-        se: none.se,
+        se: best.map_or(none.se, |force| force.se.hypot(none.se)),
         says: SAYS.into(),
         coordinate: best.map(|force| force.axis),
         ..Judged::default()

@@ -252,7 +252,9 @@ mod tests {
             width: 2.0,
             draws: vec![vec![-1.0; CELLS]; 2],
             log_bayes_factor: 0.0,
-            process: (20.0, 1.0),
+            se: 0.0,
+            own: vec![],
+            process: super::super::locate::Process(0.0, 0.0),
         }
     }
 

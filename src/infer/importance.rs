@@ -239,22 +239,10 @@ impl ImportanceSampling {
         found: &[Particle],
         seed: Seed,
     ) -> Result<Inference> {
-        let n = found.len() as f64;
-        let logs: Vec<f64> = found.iter().map(Particle::log_weight).collect();
-        let total = super::log_sum_exp(logs.iter().copied());
-        if !total.is_finite() {
-            return Err(Error::inference(
-                "no draw has a positive density: prior and recording \
-                 contradict each other",
-            ));
-        }
-        let weights = normalised(found);
-        let effective = 1.0 / weights.iter().map(|w| w * w).sum::<f64>();
-        let se = ((n / effective - 1.0) / (n - 1.0)).sqrt();
-        let (_, k) = psis(&logs);
+        let sum = summed(found)?;
         let mut rng = seed.rng();
         let chosen =
-            systematic(&weights, effective.max(100.0) as usize, &mut rng);
+            systematic(&sum.weights, sum.effective.max(100.0) as usize, &mut rng);
         let rows = chosen
             .par_iter()
             .map(|&i| posterior.natural(&found[i].z))
@@ -265,14 +253,44 @@ impl ImportanceSampling {
         Ok(Inference {
             draws: Some(draws),
             evidence: Some(Evidence {
-                log: total - n.ln(),
-                se,
+                log: sum.log,
+                se: sum.se,
                 method: "importance sampling by a Student-t mixture".into(),
             }),
-            warnings: warn(k, effective, n),
+            warnings: sum.warnings,
             ..Inference::default()
         })
     }
+}
+
+/// What weighted particles say.
+pub(super) struct Sum {
+    /// ln of the mean weight, and its standard error.
+    pub(super) log: f64,
+    pub(super) se: f64,
+    /// The weights, adding up to 1, and how many even ones they are worth.
+    pub(super) weights: Vec<f64>,
+    pub(super) effective: f64,
+    pub(super) warnings: Vec<String>,
+}
+
+/// The evidence that weighted particles give.
+pub(super) fn summed(found: &[Particle]) -> Result<Sum> {
+    let n = found.len() as f64;
+    let logs: Vec<f64> = found.iter().map(Particle::log_weight).collect();
+    let log = log_mean_weight(found);
+    if !log.is_finite() {
+        return Err(Error::inference(
+            "no draw has a positive density: prior and recording contradict \
+             each other",
+        ));
+    }
+    let weights = normalised(found);
+    let effective = 1.0 / weights.iter().map(|w| w * w).sum::<f64>();
+    let se = ((n / effective - 1.0) / (n - 1.0)).sqrt();
+    let (_, k) = psis(&logs);
+    let warnings = warn(k, effective, n);
+    Ok(Sum { log, se, weights, effective, warnings })
 }
 
 fn warn(k: f64, effective: f64, n: f64) -> Vec<String> {

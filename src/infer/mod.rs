@@ -6,6 +6,7 @@
 //! a run is the same to the last bit on any number of threads.
 
 mod bridge;
+mod conditional;
 mod descent;
 mod groups;
 mod importance;
@@ -27,6 +28,7 @@ mod told;
 mod walk;
 
 pub use bridge::Bridge;
+pub(crate) use conditional::{Conditional, Held, Integral, Integration};
 pub use descent::{Peak, climb};
 pub use groups::{Group, Grouped};
 pub use importance::ImportanceSampling;
@@ -39,6 +41,7 @@ pub use peaks::{Peaks, Ridge};
 pub use quadrature::{LEVELS, Marginal, Quadrature};
 pub use reciprocal::ReciprocalImportance;
 pub use smc::Smc;
+pub(crate) use smc::systematic;
 
 use std::fmt::Debug;
 use std::time::Instant;

@@ -159,6 +159,10 @@ pub(super) struct Particle {
 }
 
 impl Particle {
+    pub(super) fn new(z: Vec<f64>, base: f64, target: f64) -> Self {
+        Self { z, base, target }
+    }
+
     /// Somewhere, with no weight: what a draw counts as that is cut short. To
     /// draw again instead would divide the evidence by the share of whole ones.
     fn without_density(dimension: usize) -> Self {
@@ -520,7 +524,7 @@ fn bisect(logs: &[f64], most: f64, goal: f64) -> f64 {
 
 /// Systematic resampling: one uniform draw places an even comb on the
 /// cumulated weights.
-pub(super) fn systematic(
+pub(crate) fn systematic(
     weights: &[f64],
     count: usize,
     rng: &mut Rng,

@@ -142,7 +142,7 @@ fn nudged(covariance: &DMatrix<f64>) -> DMatrix<f64> {
 impl Mixture {
     /// The mixture of given parts: weight, mean and covariance of each.
     /// `None` where there are none.
-    pub(super) fn of(
+    pub(crate) fn of(
         parts: impl Iterator<Item = (f64, DVector<f64>, DMatrix<f64>)>,
     ) -> Option<Self> {
         let mut components: Vec<Component> = parts

@@ -1,0 +1,292 @@
+//! Looks at the process of a free-form force, at a grid of its length and
+//! size: where the model's parameters are best there, the force integrated by
+//! its normal approximation.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+use statrs::distribution::{ContinuousCDF, Normal};
+
+use super::free_form::FreeForm;
+use super::marginal::{Best, sharpness, step};
+use super::{CELLS, LENGTH, SIZE};
+use crate::error::{Error, Result};
+use crate::infer::Mixture;
+use crate::model::{Posterior, Program, With};
+use crate::observe::Extent;
+use crate::physics::forces::Axis;
+use crate::prior::AnyPrior;
+
+/// A process, as two numbers that are standard normal beforehand: of its
+/// length and of its size.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::discrepancy) struct Process(
+    pub(in crate::discrepancy) f64,
+    pub(in crate::discrepancy) f64,
+);
+
+impl Process {
+    /// The first coordinates of a place, and the rest.
+    pub(super) fn parted(z: &[f64]) -> (Self, &[f64]) {
+        (Self(z[0], z[1]), &z[2..])
+    }
+
+    /// Its length \[m\].
+    pub(super) fn length(&self) -> f64 {
+        let (median, spread) = LENGTH;
+        // Beyond these a process is as good as white, or as constant.
+        median * (spread * self.0).exp().clamp(1e-3, 1e3)
+    }
+
+    /// Its size \[m/s2\].
+    pub(super) fn size(&self) -> f64 {
+        let p = Normal::standard().cdf(self.1).clamp(1e-9, 1.0 - 1e-9);
+        AnyPrior::HalfNormal(SIZE).quantile(p).unwrap_or(SIZE)
+    }
+
+    pub(super) fn log_prior(&self) -> f64 {
+        let Self(a, b) = self;
+        -0.5 * (a * a + b * b) - std::f64::consts::TAU.ln()
+    }
+
+    /// The squared distance of another.
+    pub(super) fn distance(&self, other: &Self) -> f64 {
+        (self.0 - other.0).powi(2) + (self.1 - other.1).powi(2)
+    }
+}
+
+/// The grid, and how far apart its places are.
+const LENGTHS: [f64; 6] = [-1.4, -0.7, -0.2, 0.2, 0.7, 1.4];
+const SIZES: [f64; 5] = [-1.3, -0.5, 0.0, 0.5, 1.3];
+const APART: f64 = 0.5;
+/// Within this squared distance a look may learn from a better one, if that
+/// holds so much more in ln.
+const NEAR: f64 = 1.0;
+const BETTER: f64 = 0.5;
+/// Looks that hold so much less than the best, in ln, teach nothing.
+const LEAST: f64 = 10.0;
+/// The most steps of a climb, the longest along one axis of the line, and a
+/// gain below which it has arrived.
+const STEPS: usize = 12;
+const LONGEST: f64 = 1.0;
+const ARRIVED: f64 = 0.02;
+/// How far the parameters are nudged to see how the force narrows.
+const NUDGE: f64 = 0.02;
+
+/// A peak of the density of a model's own parameters at one process.
+#[derive(Debug, Clone)]
+pub(super) struct Look {
+    pub(super) process: Process,
+    pub(super) waves: DVector<f64>,
+    pub(super) own: DVector<f64>,
+    /// About minus the Hessian in the own parameters.
+    precision: DMatrix<f64>,
+    /// ln of about what it integrates to.
+    log_evidence: f64,
+}
+
+/// A program with a free-form force along an axis.
+pub(super) struct Sought<'a, P> {
+    pub(super) program: &'a P,
+    pub(super) extent: &'a Extent,
+    pub(super) axis: Axis,
+}
+
+impl<P: Program> Sought<'_, P> {
+    /// The looks of the whole grid, from likely own parameters.
+    ///
+    /// # Errors
+    /// A model that fails, or one that has no density near these.
+    pub(super) fn looks(&self, own: &[f64]) -> Result<Vec<Look>> {
+        let along = LENGTHS.into_par_iter().map(|length| {
+            let mut found: Vec<Look> = Vec::new();
+            for size in SIZES {
+                let process = Process(length, size);
+                let zero = DVector::zeros(CELLS);
+                let own = DVector::from_column_slice(own);
+                let (waves, own) = match found.last() {
+                    Some(look) => (&look.waves, &look.own),
+                    None => (&zero, &own),
+                };
+                found.extend(self.look(process, waves, own)?);
+            }
+            Ok(found)
+        });
+        let found: Vec<Look> =
+            along.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect();
+        let again = found.par_iter().map(|look| self.again(look, &found));
+        let found = again.collect::<Result<Vec<_>>>()?;
+        if found.is_empty() {
+            return Err(Error::inference("no free-form force has a mode"));
+        }
+        Ok(found)
+    }
+
+    /// A look once more, from the best of those nearby, if that is better.
+    fn again(&self, look: &Look, all: &[Look]) -> Result<Look> {
+        let near = all
+            .iter()
+            .filter(|other| other.process.distance(&look.process) < NEAR)
+            .max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence));
+        let better = near.filter(|other| {
+            other.log_evidence > look.log_evidence + BETTER
+        });
+        let Some(other) = better else { return Ok(look.clone()) };
+        let found = self.look(look.process, &other.waves, &other.own)?;
+        let found = found.filter(|f| f.log_evidence > look.log_evidence);
+        Ok(found.unwrap_or_else(|| look.clone()))
+    }
+
+    /// The look at a process that a start leads to; `None` where the start has
+    /// no density.
+    fn look(
+        &self,
+        process: Process,
+        waves: &DVector<f64>,
+        own: &DVector<f64>,
+    ) -> Result<Option<Look>> {
+        let free = FreeForm::new(self.extent, self.axis, process)?;
+        let with = With::new(self.program, &[&free]);
+        let posterior = Posterior::new(&with)?;
+        let start = Best::from(&posterior, waves.as_slice(), own.as_slice())?;
+        let Some(best) = start else { return Ok(None) };
+        let climb = Climb { posterior: &posterior, damping: 1e-2 };
+        let (own, best, precision) = climb.climbed(own.clone(), best)?;
+        let Some(factor) = precision.clone().cholesky() else {
+            return Ok(None);
+        };
+        let n = own.len() as f64;
+        let log_evidence = best.height() - sharpness(&factor)
+            + 0.5 * n * std::f64::consts::TAU.ln()
+            + process.log_prior();
+        let waves = best.waves;
+        Ok(Some(Look { process, waves, own, precision, log_evidence }))
+    }
+}
+
+/// A climb of the own parameters, the force integrated.
+struct Climb<'a> {
+    posterior: &'a Posterior<'a>,
+    damping: f64,
+}
+
+impl Climb<'_> {
+    /// Where a start leads to, with the force there and about minus the
+    /// Hessian.
+    fn climbed(
+        mut self,
+        mut own: DVector<f64>,
+        mut best: Best,
+    ) -> Result<(DVector<f64>, Best, DMatrix<f64>)> {
+        let (mut gradient, mut precision) = best.slope(self.posterior)?;
+        for _ in 0..STEPS {
+            match self.step(&own, &best, &gradient, &precision)? {
+                Some(next) => (own, best) = next,
+                None => break,
+            }
+            (gradient, precision) = best.slope(self.posterior)?;
+        }
+        Ok((own, best, precision))
+    }
+
+    /// A step that climbs, with ever more damping until one does; `None` where
+    /// there is nothing to gain.
+    fn step(
+        &mut self,
+        own: &DVector<f64>,
+        best: &Best,
+        gradient: &DVector<f64>,
+        precision: &DMatrix<f64>,
+    ) -> Result<Option<(DVector<f64>, Best)>> {
+        for _ in 0..6 {
+            let mut damped = precision.clone();
+            for i in 0..own.len() {
+                damped[(i, i)] += self.damping * damped[(i, i)] + 1e-6;
+            }
+            if let Some(factor) = damped.cholesky() {
+                let mut off = factor.solve(gradient);
+                if 0.5 * off.dot(gradient) < ARRIVED {
+                    return Ok(None);
+                }
+                off *= (LONGEST / off.amax()).min(1.0);
+                let next = own + off;
+                let start = best.waves.as_slice();
+                let found =
+                    Best::from(self.posterior, start, next.as_slice())?;
+                if let Some(found) = found
+                    && found.height() > best.height()
+                {
+                    self.damping *= 0.2;
+                    return Ok(Some((next, found)));
+                }
+            }
+            self.damping = (5.0 * self.damping).max(1e-3);
+        }
+        Ok(None)
+    }
+}
+
+impl Best {
+    /// ln of the density of the own parameters, the force integrated.
+    fn height(&self) -> f64 {
+        let before = DVector::from_column_slice(&self.line[..CELLS]);
+        let pull = self.about.gradient.rows(0, CELLS);
+        let gain = 0.5 * (&self.waves - before).dot(&pull);
+        let n = CELLS as f64;
+        self.about.density.on_line() + gain - sharpness(&self.precision)
+            + 0.5 * n * std::f64::consts::TAU.ln()
+    }
+
+    /// Its gradient, and about minus its Hessian: that of the density along
+    /// the ridge of the best forces, and how these narrow by differences.
+    fn slope(
+        &self,
+        posterior: &Posterior<'_>,
+    ) -> Result<(DVector<f64>, DMatrix<f64>)> {
+        let all = &self.about.precision;
+        let n = self.line.len() - CELLS;
+        let across = all.view((0, CELLS), (CELLS, n)).into_owned();
+        let follows = self.precision.solve(&across);
+        let pull = self.about.gradient.rows(0, CELLS);
+        let own = self.about.gradient.rows(CELLS, n);
+        let mut gradient = own - follows.tr_mul(&pull);
+        let precision =
+            all.view((CELLS, CELLS), (n, n)) - across.tr_mul(&follows);
+        let here = sharpness(&self.precision);
+        for i in 0..n {
+            let mut next = self.line.clone();
+            next[CELLS + i] += NUDGE;
+            let along = follows.column(i);
+            next.iter_mut().zip(&along).for_each(|(x, f)| *x -= NUDGE * f);
+            if let Some((_, there)) = step(&posterior.information(&next)?) {
+                gradient[i] -= (sharpness(&there) - here) / NUDGE;
+            }
+        }
+        Ok((gradient, precision))
+    }
+}
+
+/// Where the process and the model's parameters are likely, as the looks have
+/// them.
+///
+/// # Errors
+/// Looks without width.
+pub(super) fn proposal(looks: &[Look]) -> Result<Mixture> {
+    let logs = looks.iter().map(|look| look.log_evidence);
+    let best = logs.fold(f64::NEG_INFINITY, f64::max);
+    let near = looks.iter().filter(|l| best - l.log_evidence < LEAST);
+    let parts = near.filter_map(|look| {
+        let n = look.own.len();
+        let own = look.precision.clone().cholesky()?.inverse();
+        let mut covariance = DMatrix::identity(2 + n, 2 + n) * APART.powi(2);
+        covariance.view_mut((2, 2), (n, n)).copy_from(&own);
+        let Process(length, size) = look.process;
+        let own = look.own.iter().copied();
+        let mean: Vec<f64> = [length, size].into_iter().chain(own).collect();
+        // The root keeps those in whose approximation is poor.
+        let weight = (0.5 * (look.log_evidence - best)).exp();
+        Some((weight, DVector::from_vec(mean), covariance))
+    });
+    Mixture::of(parts).ok_or_else(|| {
+        Error::inference("no free-form force has a mode with a width")
+    })
+}

@@ -1,0 +1,204 @@
+//! What a free-form force holds at a given process and given parameters of
+//! the model: the force integrated.
+//!
+//! The square of the speed is linear in a force over distance, so that given
+//! the process and the model's parameters the force is nearly normal, while
+//! the process's size and the errors are not: where all are climbed together
+//! the best place is one at which the force follows every error, and what a
+//! normal approximation there integrates to was seen to be 4 in ln too low.
+
+use nalgebra::{Cholesky, DVector, Dyn};
+use rand_distr::{ChiSquared, Distribution, StandardNormal};
+use statrs::function::gamma::ln_gamma;
+
+use super::CELLS;
+use super::free_form::FreeForm;
+use super::look::{Look, Process, Sought};
+use crate::draws::log_sum_exp;
+use crate::error::{Error, Result};
+use crate::infer::{Conditional, Held, systematic};
+use crate::model::{Information, Point, Posterior, Program, With};
+use crate::seed::{Rng, Seed};
+
+/// How many forces are drawn at a place: half of them mirror the others at
+/// the best one, so that what is odd about it cancels.
+const FORCES: usize = 32;
+/// How many of these are kept.
+const KEPT: usize = 8;
+/// Degrees of freedom of what they are drawn from: somewhat heavier tails than
+/// the normal ones.
+const FREEDOM: f64 = 10.0;
+/// The most steps to where the force is best, and a gain of the log density
+/// below which a step more is not worth it.
+const STEPS: usize = 5;
+const ARRIVED: f64 = 0.1;
+
+/// A model with a free-form force, as one of the process and the model's own
+/// parameters.
+pub(super) struct Marginal<'a, P> {
+    pub(super) sought: Sought<'a, P>,
+    /// Where the waves are known to be best.
+    pub(super) looks: Vec<Look>,
+}
+
+impl<P: Program> Conditional for Marginal<'_, P> {
+    fn held(&self, z: &[f64], seed: Seed) -> Result<Held> {
+        let (process, own) = Process::parted(z);
+        let Sought { program, extent, axis } = self.sought;
+        let free = FreeForm::new(extent, axis, process)?;
+        let with = With::new(program, &[&free]);
+        let posterior = Posterior::new(&with)?;
+        let start = self.nearest(z).waves.as_slice();
+        let Some(best) = Best::from(&posterior, start, own)? else {
+            return Ok(Held::nothing());
+        };
+        let mut rng = seed.rng();
+        let (waves, logs) = best.drawn(&posterior, own, &mut rng)?;
+        let total = log_sum_exp(logs.iter().copied());
+        if total == f64::NEG_INFINITY {
+            return Ok(Held::nothing());
+        }
+        let weights: Vec<f64> =
+            logs.iter().map(|log| (log - total).exp()).collect();
+        let chosen = systematic(&weights, KEPT, &mut rng).into_iter();
+        let log = total - (FORCES as f64).ln() + process.log_prior();
+        let rest = chosen.map(|i| free.force(&waves[i])).collect();
+        Ok(Held { log, rest })
+    }
+}
+
+impl<P> Marginal<'_, P> {
+    /// The look that is most like a place.
+    fn nearest(&self, z: &[f64]) -> &Look {
+        let (process, own) = Process::parted(z);
+        let own = DVector::from_column_slice(own);
+        let off = |look: &Look| {
+            look.process.distance(&process) + (&look.own - &own).norm_squared()
+        };
+        let mut nearest = &self.looks[0];
+        for look in &self.looks {
+            if off(look) < off(nearest) {
+                nearest = look;
+            }
+        }
+        nearest
+    }
+}
+
+/// Waves that are about best, given a model's own parameters.
+pub(super) struct Best {
+    pub(super) waves: DVector<f64>,
+    pub(super) precision: Cholesky<f64, Dyn>,
+    /// The last place before, and the model there.
+    pub(super) line: Vec<f64>,
+    pub(super) about: Information,
+}
+
+impl Best {
+    /// Those that a start leads to; `None` where it has no density.
+    pub(super) fn from(
+        posterior: &Posterior<'_>,
+        start: &[f64],
+        own: &[f64],
+    ) -> Result<Option<Self>> {
+        let mut waves = DVector::from_column_slice(start);
+        let mut found = None;
+        for _ in 0..STEPS {
+            let line = [waves.as_slice(), own].concat();
+            let about = posterior.information(&line)?;
+            let Some((step, precision)) = step(&about) else { break };
+            let gain = 0.5 * step.dot(&about.gradient.rows(0, CELLS));
+            let (from, height) = (waves.clone(), about.density.on_line());
+            let next = &from + &step;
+            found = Some(Self { waves: next, precision, line, about });
+            if gain < ARRIVED {
+                break;
+            }
+            match climbed(posterior, &from, &step, own, height)? {
+                Some(higher) => waves = higher,
+                None => break,
+            }
+        }
+        Ok(found)
+    }
+
+    /// Waves drawn about the best, each with ln of its importance weight.
+    fn drawn(
+        &self,
+        posterior: &Posterior<'_>,
+        own: &[f64],
+        rng: &mut Rng,
+    ) -> Result<(Vec<Vec<f64>>, Vec<f64>)> {
+        let spread = self.precision.l().transpose();
+        let (mut all, mut logs) = (Vec::new(), Vec::new());
+        for _ in 0..FORCES / 2 {
+            let (white, base) = student(rng)?;
+            let base = base + sharpness(&self.precision);
+            let Some(off) = spread.solve_upper_triangular(&white) else {
+                continue;
+            };
+            for waves in [&self.waves + &off, &self.waves - &off] {
+                let line = [waves.as_slice(), own].concat();
+                let density = posterior.density(Point::Line(&line))?;
+                logs.push(density.on_line() - base);
+                all.push(waves.as_slice().to_vec());
+            }
+        }
+        Ok((all, logs))
+    }
+}
+
+/// Half of ln det of a precision.
+pub(super) fn sharpness(precision: &Cholesky<f64, Dyn>) -> f64 {
+    precision.l_dirty().diagonal().iter().map(|d| d.ln()).sum()
+}
+
+/// Newton's step of the waves, with the precision that it goes by.
+pub(super) fn step(
+    about: &Information,
+) -> Option<(DVector<f64>, Cholesky<f64, Dyn>)> {
+    if !about.density.on_line().is_finite() {
+        return None;
+    }
+    let precision = about.precision.view((0, 0), (CELLS, CELLS));
+    let precision = precision.into_owned().cholesky()?;
+    let step = precision.solve(&about.gradient.rows(0, CELLS).into_owned());
+    step.iter().all(|s| s.is_finite()).then_some((step, precision))
+}
+
+/// As much of a step as climbs, if any of it does.
+fn climbed(
+    posterior: &Posterior<'_>,
+    waves: &DVector<f64>,
+    step: &DVector<f64>,
+    own: &[f64],
+    height: f64,
+) -> Result<Option<DVector<f64>>> {
+    for share in [1.0, 0.5, 0.2, 0.05] {
+        let next = waves + share * step;
+        let line = [next.as_slice(), own].concat();
+        let density = posterior.density(Point::Line(&line))?;
+        if density.on_line() > height {
+            return Ok(Some(next));
+        }
+    }
+    Ok(None)
+}
+
+/// A draw of Student's t distribution of as many dimensions as there are
+/// cells, with ln of its density.
+fn student(rng: &mut Rng) -> Result<(DVector<f64>, f64)> {
+    let (n, k) = (CELLS as f64, FREEDOM);
+    let law = ChiSquared::new(k)
+        .map_err(|e| Error::inference(format!("degrees of freedom: {e}")))?;
+    let shrink = (k / law.sample(rng)).sqrt();
+    let white = DVector::from_fn(CELLS, |_, _| {
+        let normal: f64 = StandardNormal.sample(rng);
+        shrink * normal
+    });
+    let constant = ln_gamma(0.5 * (k + n))
+        - ln_gamma(0.5 * k)
+        - 0.5 * n * (k * std::f64::consts::PI).ln();
+    let tail = 0.5 * (k + n) * (white.norm_squared() / k).ln_1p();
+    Ok((white, constant - tail))
+}
