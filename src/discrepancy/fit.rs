@@ -71,7 +71,10 @@ pub fn fit<P: Program>(
 }
 
 /// The draw with the highest density, on the real line.
-pub(super) fn likeliest(posterior: &Posterior<'_>, draws: &Draws) -> Result<Vec<f64>> {
+pub(super) fn likeliest(
+    posterior: &Posterior<'_>,
+    draws: &Draws,
+) -> Result<Vec<f64>> {
     let mut best = (f64::NEG_INFINITY, Vec::new());
     for row in draws.thinned(400) {
         let density = posterior.density(Point::Natural(row))?.natural();

@@ -46,11 +46,8 @@ pub(crate) struct Integral {
     pub(crate) draws: Vec<(Vec<f64>, Vec<Vec<f64>>)>,
 }
 
-/// How many draws a round makes, and how many rounds there are at the most.
+/// How many draws a round makes.
 const DRAWS: usize = 150;
-const ROUNDS: u64 = 8;
-/// A standard error of the log evidence that is small enough.
-const ENOUGH: f64 = 0.12;
 
 /// An integral over the few coordinates under way: importance sampling from a
 /// mixture, round after round.
@@ -59,19 +56,19 @@ pub(crate) struct Integration {
     found: Vec<Particle>,
     held: Vec<Held>,
     seed: Seed,
-    round: u64,
 }
 
 impl Integration {
     /// With a mixture that says about where the few coordinates lie.
     pub(crate) fn new(mixture: Mixture, seed: Seed) -> Self {
         let (found, held) = (Vec::new(), Vec::new());
-        Self { mixture, found, held, seed, round: 0 }
+        Self { mixture, found, held, seed }
     }
 
     /// Another round of draws.
     pub(crate) fn go_on(&mut self, posterior: &dyn Conditional) -> Result<()> {
-        let (mixture, seed) = (&self.mixture, self.seed.child(self.round));
+        let round = self.rounds() as u64;
+        let (mixture, seed) = (&self.mixture, self.seed.child(1 + round));
         let draw = |i: usize| {
             let seed = seed.child(i as u64);
             let z = mixture.draw(&mut seed.child(0).rng());
@@ -85,35 +82,27 @@ impl Integration {
             self.found.push(particle);
             self.held.push(held);
         }
-        self.round += 1;
         Ok(())
     }
 
-    /// As many rounds as the standard error asks for.
-    pub(crate) fn finish(&mut self, posterior: &dyn Conditional) -> Result<()> {
-        while self.round < ROUNDS && !self.is_sharp() {
-            self.go_on(posterior)?;
-        }
-        Ok(())
+    /// How many rounds were made.
+    pub(crate) fn rounds(&self) -> usize {
+        self.found.len() / DRAWS
     }
 
-    fn is_sharp(&self) -> bool {
-        summed(&self.found).is_ok_and(|sum| sum.se < ENOUGH)
-    }
-
-    /// ln of the evidence as known so far.
-    pub(crate) fn log_evidence(&self) -> f64 {
-        summed(&self.found).map_or(f64::NEG_INFINITY, |sum| sum.log)
+    /// ln of the evidence as known so far, and its standard error.
+    pub(crate) fn known(&self) -> (f64, f64) {
+        let sum = summed(&self.found);
+        sum.map_or((f64::NEG_INFINITY, 0.0), |sum| (sum.log, sum.se))
     }
 
     /// What was found, with at least a hundred draws of the few coordinates.
     pub(crate) fn concluded(&self) -> Result<Integral> {
         let Sum { log, se, weights, effective, .. } = summed(&self.found)?;
         let count = effective.max(100.0) as usize;
-        let mut rng = self.seed.child(ROUNDS).rng();
-        let draw = |i: usize| {
-            (self.found[i].z.clone(), self.held[i].rest.clone())
-        };
+        let mut rng = self.seed.child(0).rng();
+        let draw =
+            |i: usize| (self.found[i].z.clone(), self.held[i].rest.clone());
         let chosen = systematic(&weights, count, &mut rng).into_iter();
         let draws = chosen.map(draw).collect();
         Ok(Integral { log_evidence: log, se, draws })

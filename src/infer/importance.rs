@@ -241,8 +241,11 @@ impl ImportanceSampling {
     ) -> Result<Inference> {
         let sum = summed(found)?;
         let mut rng = seed.rng();
-        let chosen =
-            systematic(&sum.weights, sum.effective.max(100.0) as usize, &mut rng);
+        let chosen = systematic(
+            &sum.weights,
+            sum.effective.max(100.0) as usize,
+            &mut rng,
+        );
         let rows = chosen
             .par_iter()
             .map(|&i| posterior.natural(&found[i].z))

@@ -120,4 +120,3 @@ impl Missing for FreeForm {
         change
     }
 }
-

@@ -10,7 +10,7 @@ use super::free_form::FreeForm;
 use super::marginal::{Best, sharpness, step};
 use super::{CELLS, LENGTH, SIZE};
 use crate::error::{Error, Result};
-use crate::infer::Mixture;
+use crate::infer::{Mixture, climb};
 use crate::model::{Posterior, Program, With};
 use crate::observe::Extent;
 use crate::physics::forces::Axis;
@@ -55,8 +55,8 @@ impl Process {
 }
 
 /// The grid, and how far apart its places are.
-const LENGTHS: [f64; 6] = [-1.4, -0.7, -0.2, 0.2, 0.7, 1.4];
-const SIZES: [f64; 5] = [-1.3, -0.5, 0.0, 0.5, 1.3];
+const LENGTHS: [f64; 5] = [-1.3, -0.6, 0.0, 0.6, 1.3];
+const SIZES: [f64; 4] = [-1.2, -0.4, 0.4, 1.2];
 const APART: f64 = 0.5;
 /// Within this squared distance a look may learn from a better one, if that
 /// holds so much more in ln.
@@ -92,31 +92,71 @@ pub(super) struct Sought<'a, P> {
 }
 
 impl<P: Program> Sought<'_, P> {
-    /// The looks of the whole grid, from likely own parameters.
+    /// The looks of the whole grid, from likely own parameters: from small
+    /// sizes to large ones, where at first the errors explain what the model
+    /// does not, and back, where at first the force does.
     ///
     /// # Errors
     /// A model that fails, or one that has no density near these.
     pub(super) fn looks(&self, own: &[f64]) -> Result<Vec<Look>> {
-        let along = LENGTHS.into_par_iter().map(|length| {
-            let mut found: Vec<Look> = Vec::new();
-            for size in SIZES {
-                let process = Process(length, size);
-                let zero = DVector::zeros(CELLS);
-                let own = DVector::from_column_slice(own);
-                let (waves, own) = match found.last() {
-                    Some(look) => (&look.waves, &look.own),
-                    None => (&zero, &own),
-                };
-                found.extend(self.look(process, waves, own)?);
-            }
-            Ok(found)
+        let both = LENGTHS.into_par_iter().flat_map(|length| {
+            let (first, last) = (SIZES[0], SIZES[SIZES.len() - 1]);
+            [(first, false), (last, true)].into_par_iter().map(
+                move |(size, back)| {
+                    let start =
+                        self.start(Process(length, size), own, back)?;
+                    self.along(length, start, back)
+                },
+            )
         });
         let found: Vec<Look> =
-            along.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect();
+            both.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect();
         let again = found.par_iter().map(|look| self.again(look, &found));
         let found = again.collect::<Result<Vec<_>>>()?;
         if found.is_empty() {
             return Err(Error::inference("no free-form force has a mode"));
+        }
+        Ok(found)
+    }
+
+    /// Where the looks start: at no force, or where force and parameters are
+    /// best together, which is where the force follows the recording most.
+    fn start(
+        &self,
+        process: Process,
+        own: &[f64],
+        best: bool,
+    ) -> Result<(DVector<f64>, DVector<f64>)> {
+        let none = [vec![0.0; CELLS], own.to_vec()].concat();
+        let mut line = DVector::from_vec(none);
+        if best {
+            let free = FreeForm::new(self.extent, self.axis, process)?;
+            let with = With::new(self.program, &[&free]);
+            let peak = climb(&Posterior::new(&with)?, line.as_slice())?;
+            line = peak.map_or(line, |peak| peak.line);
+        }
+        let waves = line.rows(0, CELLS).into_owned();
+        Ok((waves, line.rows(CELLS, own.len()).into_owned()))
+    }
+
+    /// The looks at one length, each from the one before.
+    fn along(
+        &self,
+        length: f64,
+        start: (DVector<f64>, DVector<f64>),
+        back: bool,
+    ) -> Result<Vec<Look>> {
+        let mut sizes = SIZES;
+        if back {
+            sizes.reverse();
+        }
+        let mut found: Vec<Look> = Vec::new();
+        for size in sizes {
+            let (waves, own) = match found.last() {
+                Some(look) => (&look.waves, &look.own),
+                None => (&start.0, &start.1),
+            };
+            found.extend(self.look(Process(length, size), waves, own)?);
         }
         Ok(found)
     }
@@ -127,9 +167,8 @@ impl<P: Program> Sought<'_, P> {
             .iter()
             .filter(|other| other.process.distance(&look.process) < NEAR)
             .max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence));
-        let better = near.filter(|other| {
-            other.log_evidence > look.log_evidence + BETTER
-        });
+        let better = near
+            .filter(|other| other.log_evidence > look.log_evidence + BETTER);
         let Some(other) = better else { return Ok(look.clone()) };
         let found = self.look(look.process, &other.waves, &other.own)?;
         let found = found.filter(|f| f.log_evidence > look.log_evidence);

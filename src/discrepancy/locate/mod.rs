@@ -16,7 +16,7 @@ use rayon::prelude::*;
 
 use super::fit::Fit;
 use crate::change::Mechanism;
-use crate::draws::Draws;
+use crate::draws::{Draws, log_sum_exp};
 use crate::error::Result;
 use crate::infer::{Integral, Integration};
 use crate::model::{Posterior, Program, With};
@@ -32,9 +32,10 @@ use marginal::Marginal;
 
 /// How many cells the force has.
 pub const CELLS: usize = 40;
-/// Axes that hold so much less than the best, in ln, need no more than a
-/// first look.
-const FAR: f64 = 4.0;
+/// How many rounds of draws are made along an axis at the most, and a
+/// standard error of ln evidence that is small enough.
+const ROUNDS: usize = 8;
+const SHARP: f64 = 0.12;
 /// The prior median of the process's length \[m\], and the sd of its log.
 const LENGTH: (f64, f64) = (20.0, 0.7);
 /// The prior scale of the force \[m/s2\].
@@ -120,13 +121,12 @@ pub fn locate<P: Program>(
     none: &Fit,
     seed: Seed,
 ) -> Result<FreeForce> {
-    let mut search = Search::new(program, extent, axis, none, seed)?;
-    search.integration.finish(&search.marginal)?;
-    search.force(none)
+    let mut search = [Search::new(program, extent, axis, none, seed)?];
+    sharpen(&mut search)?;
+    search[0].force(none)
 }
 
-/// The same along every axis; along those that matter little next to the best
-/// less sharply.
+/// The same along every axis; as sharply as their mean evidence asks for.
 pub(super) fn locate_all<P: Program>(
     program: &P,
     extent: &Extent,
@@ -140,16 +140,32 @@ pub(super) fn locate_all<P: Program>(
             Search::new(program, extent, axis, none, seed.child(i as u64))
         })
         .collect::<Result<_>>()?;
-    let logs = all.iter().map(|search| search.integration.log_evidence());
-    let best = logs.fold(f64::NEG_INFINITY, f64::max);
-    all.par_iter_mut()
-        .map(|search| {
-            if best - search.integration.log_evidence() < FAR {
-                search.integration.finish(&search.marginal)?;
+    sharpen(&mut all)?;
+    all.iter().map(|search| search.force(none)).collect()
+}
+
+/// Draws on until the mean evidence is sharp enough, always where that gains
+/// most.
+fn sharpen<P: Program>(all: &mut [Search<'_, P>]) -> Result<()> {
+    for _ in 0..ROUNDS * all.len() {
+        let known: Vec<(f64, f64)> =
+            all.iter().map(|search| search.integration.known()).collect();
+        let total = log_sum_exp(known.iter().map(|(log, _)| *log));
+        let errors: Vec<f64> =
+            known.iter().map(|(log, se)| (log - total).exp() * se).collect();
+        let all_errors = errors.iter().map(|e| e * e).sum::<f64>().sqrt();
+        let open = (0..all.len())
+            .filter(|&i| all[i].integration.rounds() < ROUNDS)
+            .max_by(|&i, &j| errors[i].total_cmp(&errors[j]));
+        match open {
+            Some(i) if all_errors > SHARP => {
+                let Search { marginal, integration } = &mut all[i];
+                integration.go_on(marginal)?;
             }
-            search.force(none)
-        })
-        .collect()
+            _ => break,
+        }
+    }
+    Ok(())
 }
 
 /// The inference of a free-form force under way.
