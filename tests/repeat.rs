@@ -8,11 +8,12 @@ use std::path::{Path, PathBuf};
 
 use couloir::Error;
 use couloir::challenge::{Case, Mix, cases};
-use couloir::discrepancy::attribute;
 use couloir::discrepancy::mechanisms::catalogue;
-use couloir::infer::{Backend, Quiet, Smc};
+use couloir::discrepancy::{attribute, fit, locate};
+use couloir::infer::{Backend, Peaks, Quiet, Smc};
 use couloir::io::parse_event;
 use couloir::model::{Assembled, Posterior, With};
+use couloir::physics::forces::Axis;
 use couloir::physics::friction::Laws;
 use couloir::seed::Seed;
 
@@ -34,6 +35,14 @@ fn model_of(case: &Case) -> Assembled {
         .unwrap()
 }
 
+/// ln of the evidence of a free-form force over distance.
+fn free_force(model: &Assembled, seed: Seed) -> f64 {
+    let none = fit(model, &[], &Peaks::default(), seed).unwrap();
+    let extent = model.event().extent();
+    let force = locate(model, &extent, Axis::Place, &none, seed).unwrap();
+    none.log_evidence + force.log_bayes_factor
+}
+
 /// How far below the best, in ln, a candidate no longer matters: it has a
 /// millionth of a millionth of the probability. A mode that is only found by
 /// chance was seen in 2 of 331 candidates, 60 below the best and further.
@@ -52,6 +61,12 @@ fn evidences_repeat_within_three_tenths() {
             .map(|s| attribute(&model, &candidates, Seed::new(s), &Quiet))
             .map(|found| found.unwrap().candidates)
             .collect();
+        let free = [1, 2, 3].map(|seed| free_force(&model, Seed::new(seed)));
+        println!("{effect}: {free:?}");
+        for log in free {
+            let off = (log - free.iter().sum::<f64>() / 3.0).abs();
+            assert!(off < 0.3, "{effect}: free-form force {free:?}");
+        }
         let first = fits[0].iter().map(|fit| fit.log_evidence);
         let best = first.fold(f64::NEG_INFINITY, f64::max);
         for (i, mechanism) in candidates.iter().enumerate() {

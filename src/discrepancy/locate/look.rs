@@ -105,7 +105,7 @@ impl<P: Program> Sought<'_, P> {
                 move |(size, back)| {
                     let start =
                         self.start(Process(length, size), own, back)?;
-                    self.along(length, start, back)
+                    self.along(length, &start, back)
                 },
             )
         });
@@ -119,44 +119,48 @@ impl<P: Program> Sought<'_, P> {
         Ok(found)
     }
 
-    /// Where the looks start: at no force, or where force and parameters are
-    /// best together, which is where the force follows the recording most.
+    /// Where the looks start, as waves and own parameters: at no force, or
+    /// where all are best together, which is where the force follows the
+    /// recording most.
     fn start(
         &self,
         process: Process,
         own: &[f64],
         best: bool,
-    ) -> Result<(DVector<f64>, DVector<f64>)> {
+    ) -> Result<DVector<f64>> {
         let none = [vec![0.0; CELLS], own.to_vec()].concat();
-        let mut line = DVector::from_vec(none);
-        if best {
-            let free = FreeForm::new(self.extent, self.axis, process)?;
-            let with = With::new(self.program, &[&free]);
-            let peak = climb(&Posterior::new(&with)?, line.as_slice())?;
-            line = peak.map_or(line, |peak| peak.line);
+        if !best {
+            return Ok(DVector::from_vec(none));
         }
-        let waves = line.rows(0, CELLS).into_owned();
-        Ok((waves, line.rows(CELLS, own.len()).into_owned()))
+        let free = FreeForm::new(self.extent, self.axis, process)?;
+        let with = With::new(self.program, &[&free]);
+        let peak = climb(&Posterior::new(&with)?, &none)?;
+        Ok(peak.map_or(DVector::from_vec(none), |peak| peak.line))
     }
 
     /// The looks at one length, each from the one before.
     fn along(
         &self,
         length: f64,
-        start: (DVector<f64>, DVector<f64>),
+        start: &DVector<f64>,
         back: bool,
     ) -> Result<Vec<Look>> {
         let mut sizes = SIZES;
         if back {
             sizes.reverse();
         }
+        let (waves, own) = start.as_slice().split_at(CELLS);
+        let mut from = (
+            DVector::from_column_slice(waves),
+            DVector::from_column_slice(own),
+        );
         let mut found: Vec<Look> = Vec::new();
         for size in sizes {
-            let (waves, own) = match found.last() {
-                Some(look) => (&look.waves, &look.own),
-                None => (&start.0, &start.1),
-            };
-            found.extend(self.look(Process(length, size), waves, own)?);
+            let process = Process(length, size);
+            if let Some(look) = self.look(process, &from.0, &from.1)? {
+                from = (look.waves.clone(), look.own.clone());
+                found.push(look);
+            }
         }
         Ok(found)
     }

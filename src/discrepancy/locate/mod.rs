@@ -224,16 +224,17 @@ impl FreeForce {
             own: each.clone().flat_map(|(z, f)| own(z, f.len())).collect(),
             log_bayes_factor,
             se: found.se,
-            process: middle(each.map(|(z, _)| Process::parted(z).0)),
+            process: middle(found.draws.iter().map(|(z, _)| &z[..])),
             draws,
         }
     }
 }
 
 /// The median length and the median size.
-fn middle(all: impl Iterator<Item = Process> + Clone) -> Process {
+fn middle<'z>(places: impl Iterator<Item = &'z [f64]>) -> Process {
+    let all: Vec<Process> = places.map(|z| Process::parted(z).0).collect();
     let median = |of: fn(&Process) -> f64| {
-        let mut all: Vec<f64> = all.clone().map(|p| of(&p)).collect();
+        let mut all: Vec<f64> = all.iter().map(of).collect();
         all.sort_by(f64::total_cmp);
         all.get(all.len() / 2).copied().unwrap_or(0.0)
     };
@@ -347,3 +348,6 @@ impl FreeForce {
         self.draws.iter().map(mean).collect()
     }
 }
+
+#[cfg(test)]
+mod tests;
