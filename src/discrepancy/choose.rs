@@ -74,6 +74,42 @@ impl<P: Program> Choice<'_, P> {
         self.exchanged(found).map(Some)
     }
 
+    /// The verdict once combinations are weighed too.
+    ///
+    /// Where two or three mechanisms together were chosen, a single one is out
+    /// of the question, and what they say goes: physics where one of them is
+    /// of the physics, though the best single mechanism may be another noise.
+    /// Where the free-form force is more probable than any single mechanism,
+    /// it must bring more than several together by what any further term has
+    /// to bring.
+    pub(super) fn explained(
+        &self,
+        verdict: Verdict,
+        chosen: Option<Chosen>,
+    ) -> (Verdict, Option<Chosen>) {
+        let unknown = self.judged.iter().find(|m| m.name == "unknown");
+        let further = RISE * LN_10 + self.beforehand.price("unknown");
+        let beyond = |c: &Chosen| {
+            let short = if c.which.len() > 1 { further } else { 0.0 };
+            let reached = c.fit.log_evidence + short;
+            verdict != Verdict::Unexplained
+                || unknown.is_some_and(|u| reached > u.log_evidence)
+        };
+        let Some(chosen) = chosen.filter(beyond) else {
+            return (verdict, None);
+        };
+        if chosen.which.len() == 1 && verdict != Verdict::Unexplained {
+            return (verdict, Some(chosen));
+        }
+        let terms = chosen.mechanisms(self.all).into_iter();
+        let verdict = match terms.map(|m| m.family()).min() {
+            Some(Family::Physics) => Verdict::MissingPhysics,
+            Some(Family::Errors) | None => Verdict::Errors,
+            Some(_) => Verdict::Measurement,
+        };
+        (verdict, Some(chosen))
+    }
+
     /// The same with a term of the physics exchanged where another has more
     /// evidence in its place; those that have nearly as much are its rivals.
     fn exchanged(&self, chosen: Chosen) -> Result<Chosen> {
@@ -336,35 +372,4 @@ impl Chosen {
         }
         reaches
     }
-}
-
-/// The verdict once combinations are weighed too.
-///
-/// Where two or three mechanisms together were chosen, a single one is out of
-/// the question, and what they say goes: physics where one of them is of the
-/// physics, though the best single mechanism may be another noise. Where the
-/// free-form force is more probable than any single mechanism, several
-/// together must have more evidence than the force.
-pub(super) fn explained(
-    verdict: Verdict,
-    chosen: Option<Chosen>,
-    judged: &[Judged],
-    all: &[Box<dyn Mechanism>],
-) -> (Verdict, Option<Chosen>) {
-    let unknown = judged.iter().find(|m| m.name == "unknown");
-    let beyond = |c: &Chosen| {
-        verdict != Verdict::Unexplained
-            || unknown.is_some_and(|u| c.fit.log_evidence > u.log_evidence)
-    };
-    let Some(chosen) = chosen.filter(beyond) else { return (verdict, None) };
-    if chosen.which.len() == 1 && verdict != Verdict::Unexplained {
-        return (verdict, Some(chosen));
-    }
-    let families = chosen.mechanisms(all).into_iter().map(|m| m.family());
-    let verdict = match families.min() {
-        Some(Family::Physics) => Verdict::MissingPhysics,
-        Some(Family::Errors) | None => Verdict::Errors,
-        Some(_) => Verdict::Measurement,
-    };
-    (verdict, Some(chosen))
 }

@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::attribute::attribute;
 use super::before_and_after::{Shown, improvement, pictured, show};
 use super::check::baseline;
-use super::choose::{Choice, Chosen, explained};
+use super::choose::{Choice, Chosen};
 use super::diagnosis::{Diagnosis, Verdict};
 use super::fit::Fit;
 use super::judge::{
@@ -92,7 +92,7 @@ impl<P: Program> Subject<'_, P> {
             seed,
         };
         let chosen = choice.choose(verdict)?;
-        let (verdict, chosen) = explained(verdict, chosen, &judged, all);
+        let (verdict, chosen) = choice.explained(verdict, chosen);
         if let Some(chosen) = &chosen {
             chosen.call(&mut judged, all);
         }
