@@ -62,7 +62,6 @@ fn evidences_repeat_within_three_tenths() {
             .map(|found| found.unwrap().candidates)
             .collect();
         let free = [1, 2, 3].map(|seed| free_force(&model, Seed::new(seed)));
-        println!("{effect}: {free:?}");
         for log in free {
             let off = (log - free.iter().sum::<f64>() / 3.0).abs();
             assert!(off < 0.3, "{effect}: free-form force {free:?}");

@@ -227,6 +227,7 @@ pub(super) fn mark(diagnosis: &mut Diagnosis, events: &[&Event]) {
 mod tests {
     use super::*;
     use crate::discrepancy::CELLS;
+    use crate::discrepancy::locate::Process;
     use crate::observe::Series;
     use crate::physics::Track;
 
@@ -254,7 +255,7 @@ mod tests {
             log_bayes_factor: 0.0,
             se: 0.0,
             own: vec![],
-            process: super::super::locate::Process(0.0, 0.0),
+            process: Process(0.0, 0.0),
         }
     }
 

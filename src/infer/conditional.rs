@@ -9,9 +9,9 @@
 
 use rayon::prelude::*;
 
-use super::importance::{Sum, summed};
+use super::importance::summed;
 use super::mixture::Mixture;
-use super::smc::{Particle, systematic};
+use super::smc::Particle;
 use crate::error::Result;
 use crate::seed::Seed;
 
@@ -98,13 +98,11 @@ impl Integration {
 
     /// What was found, with at least a hundred draws of the few coordinates.
     pub(crate) fn concluded(&self) -> Result<Integral> {
-        let Sum { log, se, weights, effective, .. } = summed(&self.found)?;
-        let count = effective.max(100.0) as usize;
-        let mut rng = self.seed.child(0).rng();
+        let sum = summed(&self.found)?;
         let draw =
             |i: usize| (self.found[i].z.clone(), self.held[i].rest.clone());
-        let chosen = systematic(&weights, count, &mut rng).into_iter();
-        let draws = chosen.map(draw).collect();
-        Ok(Integral { log_evidence: log, se, draws })
+        let draws = sum.chosen(self.seed.child(0)).into_iter().map(draw);
+        let draws = draws.collect();
+        Ok(Integral { log_evidence: sum.log, se: sum.se, draws })
     }
 }

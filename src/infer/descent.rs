@@ -120,23 +120,16 @@ fn step(
     lambda: &mut f64,
 ) -> Result<Option<DVector<f64>>> {
     let height = about.density.on_line();
+    let (mut precision, mut gradient) =
+        (about.precision.clone(), about.gradient.clone());
+    for &i in held {
+        precision.row_mut(i).fill(0.0);
+        precision.column_mut(i).fill(0.0);
+        (precision[(i, i)], gradient[i]) = (1.0, 0.0);
+    }
     for _ in 0..10 {
-        let mut damped = about.precision.clone();
-        for i in 0..line.len() {
-            damped[(i, i)] += *lambda * damped[(i, i)] + 1e-6;
-        }
-        let mut gradient = about.gradient.clone();
-        for &i in held {
-            damped.row_mut(i).fill(0.0);
-            damped.column_mut(i).fill(0.0);
-            (damped[(i, i)], gradient[i]) = (1.0, 0.0);
-        }
-        if let Some(factor) = damped.cholesky() {
-            let mut off = factor.solve(&gradient);
-            let longest = off.amax();
-            if longest > LONGEST {
-                off *= LONGEST / longest;
-            }
+        if let Some(mut off) = damped_step(&precision, &gradient, *lambda) {
+            off *= (LONGEST / off.amax()).min(1.0);
             let next = line + off;
             let density = posterior.density(Point::Line(next.as_slice()))?;
             if density.on_line() > height && density.rejected.is_none() {
@@ -147,4 +140,18 @@ fn step(
         *lambda = (*lambda * 5.0).max(1e-6);
     }
     Ok(None)
+}
+
+/// The step that solves (P + lambda diag P) step = gradient; `None` where that
+/// is not positive definite.
+pub(crate) fn damped_step(
+    precision: &DMatrix<f64>,
+    gradient: &DVector<f64>,
+    lambda: f64,
+) -> Option<DVector<f64>> {
+    let mut damped = precision.clone();
+    for i in 0..gradient.len() {
+        damped[(i, i)] += lambda * damped[(i, i)] + 1e-6;
+    }
+    Some(damped.cholesky()?.solve(gradient))
 }

@@ -240,13 +240,8 @@ impl ImportanceSampling {
         seed: Seed,
     ) -> Result<Inference> {
         let sum = summed(found)?;
-        let mut rng = seed.rng();
-        let chosen = systematic(
-            &sum.weights,
-            sum.effective.max(100.0) as usize,
-            &mut rng,
-        );
-        let rows = chosen
+        let rows = sum
+            .chosen(seed)
             .par_iter()
             .map(|&i| posterior.natural(&found[i].z))
             .collect::<Result<Vec<_>>>()?
@@ -272,9 +267,17 @@ pub(super) struct Sum {
     pub(super) log: f64,
     pub(super) se: f64,
     /// The weights, adding up to 1, and how many even ones they are worth.
-    pub(super) weights: Vec<f64>,
-    pub(super) effective: f64,
-    pub(super) warnings: Vec<String>,
+    weights: Vec<f64>,
+    effective: f64,
+    warnings: Vec<String>,
+}
+
+impl Sum {
+    /// As many even draws as the weights are worth, and a hundred at least.
+    pub(super) fn chosen(&self, seed: Seed) -> Vec<usize> {
+        let count = self.effective.max(100.0) as usize;
+        systematic(&self.weights, count, &mut seed.rng())
+    }
 }
 
 /// The evidence that weighted particles give.

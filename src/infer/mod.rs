@@ -29,12 +29,14 @@ mod walk;
 
 pub use bridge::Bridge;
 pub(crate) use conditional::{Conditional, Held, Integral, Integration};
+pub(crate) use descent::damped_step;
 pub use descent::{Peak, climb};
 pub use groups::{Group, Grouped};
 pub use importance::ImportanceSampling;
 pub use map::{Map, Mode};
 pub use mh::{MetropolisHastings, Proposal};
 pub use mixture::Mixture;
+pub(crate) use mixture::student_constant;
 #[cfg(feature = "nuts")]
 pub use nuts::Nuts;
 pub use peaks::{Peaks, Ridge};

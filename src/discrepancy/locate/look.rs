@@ -10,7 +10,7 @@ use super::free_form::FreeForm;
 use super::marginal::{Best, sharpness, step};
 use super::{CELLS, LENGTH, SIZE};
 use crate::error::{Error, Result};
-use crate::infer::{Mixture, climb};
+use crate::infer::{Mixture, Peak, climb, damped_step};
 use crate::model::{Posterior, Program, With};
 use crate::observe::Extent;
 use crate::physics::forces::Axis;
@@ -77,10 +77,9 @@ const NUDGE: f64 = 0.02;
 pub(super) struct Look {
     pub(super) process: Process,
     pub(super) waves: DVector<f64>,
-    pub(super) own: DVector<f64>,
-    /// About minus the Hessian in the own parameters.
-    precision: DMatrix<f64>,
-    /// ln of about what it integrates to.
+    /// In the own parameters.
+    pub(super) peak: Peak,
+    /// ln of about what it integrates to, the process's prior included.
     log_evidence: f64,
 }
 
@@ -92,6 +91,17 @@ pub(super) struct Sought<'a, P> {
 }
 
 impl<P: Program> Sought<'_, P> {
+    /// What a task finds under a process.
+    pub(super) fn under<T>(
+        &self,
+        process: Process,
+        task: impl FnOnce(&FreeForm, &Posterior<'_>) -> Result<T>,
+    ) -> Result<T> {
+        let free = FreeForm::new(self.extent, self.axis, process)?;
+        let with = With::new(self.program, &[&free]);
+        task(&free, &Posterior::new(&with)?)
+    }
+
     /// The looks of the whole grid, from likely own parameters: from small
     /// sizes to large ones, where at first the errors explain what the model
     /// does not, and back, where at first the force does.
@@ -132,9 +142,7 @@ impl<P: Program> Sought<'_, P> {
         if !best {
             return Ok(DVector::from_vec(none));
         }
-        let free = FreeForm::new(self.extent, self.axis, process)?;
-        let with = With::new(self.program, &[&free]);
-        let peak = climb(&Posterior::new(&with)?, &none)?;
+        let peak = self.under(process, |_, joint| climb(joint, &none))?;
         Ok(peak.map_or(DVector::from_vec(none), |peak| peak.line))
     }
 
@@ -158,7 +166,7 @@ impl<P: Program> Sought<'_, P> {
         for size in sizes {
             let process = Process(length, size);
             if let Some(look) = self.look(process, &from.0, &from.1)? {
-                from = (look.waves.clone(), look.own.clone());
+                from = (look.waves.clone(), look.peak.line.clone());
                 found.push(look);
             }
         }
@@ -174,7 +182,7 @@ impl<P: Program> Sought<'_, P> {
         let better = near
             .filter(|other| other.log_evidence > look.log_evidence + BETTER);
         let Some(other) = better else { return Ok(look.clone()) };
-        let found = self.look(look.process, &other.waves, &other.own)?;
+        let found = self.look(look.process, &other.waves, &other.peak.line)?;
         let found = found.filter(|f| f.log_evidence > look.log_evidence);
         Ok(found.unwrap_or_else(|| look.clone()))
     }
@@ -187,39 +195,33 @@ impl<P: Program> Sought<'_, P> {
         waves: &DVector<f64>,
         own: &DVector<f64>,
     ) -> Result<Option<Look>> {
-        let free = FreeForm::new(self.extent, self.axis, process)?;
-        let with = With::new(self.program, &[&free]);
-        let posterior = Posterior::new(&with)?;
-        let start = Best::from(&posterior, waves.as_slice(), own.as_slice())?;
-        let Some(best) = start else { return Ok(None) };
-        let climb = Climb { posterior: &posterior, damping: 1e-2 };
-        let (own, best, precision) = climb.climbed(own.clone(), best)?;
-        let Some(factor) = precision.clone().cholesky() else {
-            return Ok(None);
-        };
-        let n = own.len() as f64;
-        let log_evidence = best.height() - sharpness(&factor)
-            + 0.5 * n * std::f64::consts::TAU.ln()
-            + process.log_prior();
-        let waves = best.waves;
-        Ok(Some(Look { process, waves, own, precision, log_evidence }))
+        self.under(process, |_, posterior| {
+            let start =
+                Best::from(posterior, waves.as_slice(), own.as_slice())?;
+            let Some(best) = start else { return Ok(None) };
+            let climb = Climb { posterior, damping: 1e-2 };
+            let (peak, waves) = climb.climbed(own.clone(), best)?;
+            Ok(peak.log_evidence().map(|log| {
+                let log_evidence = log + process.log_prior();
+                Look { process, waves, peak, log_evidence }
+            }))
+        })
     }
 }
 
 /// A climb of the own parameters, the force integrated.
-struct Climb<'a> {
-    posterior: &'a Posterior<'a>,
+struct Climb<'a, 'm> {
+    posterior: &'a Posterior<'m>,
     damping: f64,
 }
 
-impl Climb<'_> {
-    /// Where a start leads to, with the force there and about minus the
-    /// Hessian.
+impl Climb<'_, '_> {
+    /// The peak that a start leads to, with the waves there.
     fn climbed(
         mut self,
         mut own: DVector<f64>,
         mut best: Best,
-    ) -> Result<(DVector<f64>, Best, DMatrix<f64>)> {
+    ) -> Result<(Peak, DVector<f64>)> {
         let (mut gradient, mut precision) = best.slope(self.posterior)?;
         for _ in 0..STEPS {
             match self.step(&own, &best, &gradient, &precision)? {
@@ -228,7 +230,8 @@ impl Climb<'_> {
             }
             (gradient, precision) = best.slope(self.posterior)?;
         }
-        Ok((own, best, precision))
+        let height = best.height();
+        Ok((Peak { line: own, height, precision }, best.waves))
     }
 
     /// A step that climbs, with ever more damping until one does; `None` where
@@ -241,12 +244,8 @@ impl Climb<'_> {
         precision: &DMatrix<f64>,
     ) -> Result<Option<(DVector<f64>, Best)>> {
         for _ in 0..6 {
-            let mut damped = precision.clone();
-            for i in 0..own.len() {
-                damped[(i, i)] += self.damping * damped[(i, i)] + 1e-6;
-            }
-            if let Some(factor) = damped.cholesky() {
-                let mut off = factor.solve(gradient);
+            let off = damped_step(precision, gradient, self.damping);
+            if let Some(mut off) = off {
                 if 0.5 * off.dot(gradient) < ARRIVED {
                     return Ok(None);
                 }
@@ -318,12 +317,12 @@ pub(super) fn proposal(looks: &[Look]) -> Result<Mixture> {
     let best = logs.fold(f64::NEG_INFINITY, f64::max);
     let near = looks.iter().filter(|l| best - l.log_evidence < LEAST);
     let parts = near.filter_map(|look| {
-        let n = look.own.len();
-        let own = look.precision.clone().cholesky()?.inverse();
+        let n = look.peak.line.len();
+        let own = look.peak.precision.clone().cholesky()?.inverse();
         let mut covariance = DMatrix::identity(2 + n, 2 + n) * APART.powi(2);
         covariance.view_mut((2, 2), (n, n)).copy_from(&own);
         let Process(length, size) = look.process;
-        let own = look.own.iter().copied();
+        let own = look.peak.line.iter().copied();
         let mean: Vec<f64> = [length, size].into_iter().chain(own).collect();
         // The root keeps those in whose approximation is poor.
         let weight = (0.5 * (look.log_evidence - best)).exp();

@@ -9,15 +9,13 @@
 
 use nalgebra::{Cholesky, DVector, Dyn};
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
-use statrs::function::gamma::ln_gamma;
 
 use super::CELLS;
-use super::free_form::FreeForm;
 use super::look::{Look, Process, Sought};
 use crate::draws::log_sum_exp;
 use crate::error::{Error, Result};
-use crate::infer::{Conditional, Held, systematic};
-use crate::model::{Information, Point, Posterior, Program, With};
+use crate::infer::{Conditional, Held, student_constant, systematic};
+use crate::model::{Information, Point, Posterior, Program};
 use crate::seed::{Rng, Seed};
 
 /// How many forces are drawn at a place: half of them mirror the others at
@@ -44,26 +42,24 @@ pub(super) struct Marginal<'a, P> {
 impl<P: Program> Conditional for Marginal<'_, P> {
     fn held(&self, z: &[f64], seed: Seed) -> Result<Held> {
         let (process, own) = Process::parted(z);
-        let Sought { program, extent, axis } = self.sought;
-        let free = FreeForm::new(extent, axis, process)?;
-        let with = With::new(program, &[&free]);
-        let posterior = Posterior::new(&with)?;
-        let start = self.nearest(z).waves.as_slice();
-        let Some(best) = Best::from(&posterior, start, own)? else {
-            return Ok(Held::nothing());
-        };
-        let mut rng = seed.rng();
-        let (waves, logs) = best.drawn(&posterior, own, &mut rng)?;
-        let total = log_sum_exp(logs.iter().copied());
-        if total == f64::NEG_INFINITY {
-            return Ok(Held::nothing());
-        }
-        let weights: Vec<f64> =
-            logs.iter().map(|log| (log - total).exp()).collect();
-        let chosen = systematic(&weights, KEPT, &mut rng).into_iter();
-        let log = total - (FORCES as f64).ln() + process.log_prior();
-        let rest = chosen.map(|i| free.force(&waves[i])).collect();
-        Ok(Held { log, rest })
+        self.sought.under(process, |free, posterior| {
+            let start = self.nearest(z).waves.as_slice();
+            let Some(best) = Best::from(posterior, start, own)? else {
+                return Ok(Held::nothing());
+            };
+            let mut rng = seed.rng();
+            let (waves, logs) = best.drawn(posterior, own, &mut rng)?;
+            let total = log_sum_exp(logs.iter().copied());
+            if total == f64::NEG_INFINITY {
+                return Ok(Held::nothing());
+            }
+            let weights: Vec<f64> =
+                logs.iter().map(|log| (log - total).exp()).collect();
+            let chosen = systematic(&weights, KEPT, &mut rng).into_iter();
+            let log = total - (FORCES as f64).ln() + process.log_prior();
+            let rest = chosen.map(|i| free.force(&waves[i])).collect();
+            Ok(Held { log, rest })
+        })
     }
 }
 
@@ -73,7 +69,8 @@ impl<P> Marginal<'_, P> {
         let (process, own) = Process::parted(z);
         let own = DVector::from_column_slice(own);
         let off = |look: &Look| {
-            look.process.distance(&process) + (&look.own - &own).norm_squared()
+            let off = (&look.peak.line - &own).norm_squared();
+            look.process.distance(&process) + off
         };
         let mut nearest = &self.looks[0];
         for look in &self.looks {
@@ -196,9 +193,6 @@ fn student(rng: &mut Rng) -> Result<(DVector<f64>, f64)> {
         let normal: f64 = StandardNormal.sample(rng);
         shrink * normal
     });
-    let constant = ln_gamma(0.5 * (k + n))
-        - ln_gamma(0.5 * k)
-        - 0.5 * n * (k * std::f64::consts::PI).ln();
     let tail = 0.5 * (k + n) * (white.norm_squared() / k).ln_1p();
-    Ok((white, constant - tail))
+    Ok((white, student_constant(k, n) - tail))
 }

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 
 use super::fit::Fit;
 use crate::change::Mechanism;
-use crate::draws::{Draws, log_sum_exp};
+use crate::draws::{Draws, log_sum_exp, median};
 use crate::error::Result;
 use crate::infer::{Integral, Integration};
 use crate::model::{Posterior, Program, With};
@@ -233,12 +233,10 @@ impl FreeForce {
 /// The median length and the median size.
 fn middle<'z>(places: impl Iterator<Item = &'z [f64]>) -> Process {
     let all: Vec<Process> = places.map(|z| Process::parted(z).0).collect();
-    let median = |of: fn(&Process) -> f64| {
-        let mut all: Vec<f64> = all.iter().map(of).collect();
-        all.sort_by(f64::total_cmp);
-        all.get(all.len() / 2).copied().unwrap_or(0.0)
+    let of = |part: fn(&Process) -> f64| {
+        median(&all.iter().map(part).collect::<Vec<_>>())
     };
-    Process(median(|p| p.0), median(|p| p.1))
+    Process(of(|p| p.0), of(|p| p.1))
 }
 
 fn moments(draws: &[Vec<f64>]) -> (Vec<f64>, Vec<f64>) {

@@ -22,6 +22,14 @@ const FREEDOM: f64 = 5.0;
 /// How much wider than the draws each component is made, in variance.
 const INFLATION: f64 = 1.3;
 
+/// ln of the density of a multivariate Student-t distribution of unit shape at
+/// its middle.
+pub(crate) fn student_constant(freedom: f64, dimension: f64) -> f64 {
+    ln_gamma(0.5 * (freedom + dimension))
+        - ln_gamma(0.5 * freedom)
+        - 0.5 * dimension * (freedom * std::f64::consts::PI).ln()
+}
+
 /// A mixture of Student-t components on the real line.
 #[derive(Debug, Clone)]
 pub struct Mixture {
@@ -51,10 +59,8 @@ impl Component {
         let dimension = n as f64;
         let shape = Cholesky::new(nudged(covariance))?;
         let log_det = 2.0 * shape.l().diagonal().map(f64::ln).sum();
-        let log_constant = ln_gamma(0.5 * (FREEDOM + dimension))
-            - ln_gamma(0.5 * FREEDOM)
-            - 0.5 * dimension * (FREEDOM * std::f64::consts::PI).ln()
-            - 0.5 * log_det;
+        let log_constant =
+            student_constant(FREEDOM, dimension) - 0.5 * log_det;
         let inverse =
             shape.l().solve_lower_triangular(&DMatrix::identity(n, n))?;
         let white = &inverse * &mean;
