@@ -54,13 +54,18 @@ impl Process {
     }
 }
 
-/// The grid, and how far apart its places are.
-const LENGTHS: [f64; 5] = [-1.3, -0.6, 0.0, 0.6, 1.3];
-const SIZES: [f64; 4] = [-1.2, -0.4, 0.4, 1.2];
-const APART: f64 = 0.5;
+/// The grid, and how far apart its places are; its least size is hardly a
+/// force.
+const LENGTHS: [f64; 3] = [-1.0, 0.0, 1.0];
+const SIZES: [f64; 5] = [-2.0, -1.0, 0.0, 1.0, 2.0];
+const APART: f64 = 0.6;
+/// By which lengths the grid grows where its edge holds nearly as much as its
+/// best, in ln.
+const BEYOND: [&[f64]; 2] = [&[-1.0, -2.0], &[1.0, 2.0, 3.0]];
+const NEARLY: f64 = 4.0;
 /// Within this squared distance a look may learn from a better one, if that
 /// holds so much more in ln.
-const NEAR: f64 = 1.0;
+const NEAR: f64 = 1.1;
 const BETTER: f64 = 0.5;
 /// Looks that hold so much less than the best, in ln, teach nothing.
 const LEAST: f64 = 10.0;
@@ -76,11 +81,28 @@ const NUDGE: f64 = 0.02;
 #[derive(Debug, Clone)]
 pub(super) struct Look {
     pub(super) process: Process,
-    pub(super) waves: DVector<f64>,
+    waves: DVector<f64>,
+    /// By how much the best waves fall as the own parameters rise.
+    follows: DMatrix<f64>,
     /// In the own parameters.
     pub(super) peak: Peak,
     /// ln of about what it integrates to, the process's prior included.
     log_evidence: f64,
+}
+
+impl Look {
+    /// About how unlikely a place is to be under this peak.
+    pub(super) fn distance(&self, process: &Process, own: &[f64]) -> f64 {
+        let own = DVector::from_column_slice(own);
+        self.process.distance(process) / APART.powi(2)
+            + self.peak.distance(&own)
+    }
+
+    /// About the best waves there, as they follow the own parameters or not.
+    pub(super) fn waves_at(&self, own: &[f64]) -> [DVector<f64>; 2] {
+        let off = DVector::from_column_slice(own) - &self.peak.line;
+        [&self.waves - &self.follows * off, self.waves.clone()]
+    }
 }
 
 /// A program with a free-form force along an axis.
@@ -109,24 +131,33 @@ impl<P: Program> Sought<'_, P> {
     /// # Errors
     /// A model that fails, or one that has no density near these.
     pub(super) fn looks(&self, own: &[f64]) -> Result<Vec<Look>> {
-        let both = LENGTHS.into_par_iter().flat_map(|length| {
-            let (first, last) = (SIZES[0], SIZES[SIZES.len() - 1]);
-            [(first, false), (last, true)].into_par_iter().map(
-                move |(size, back)| {
-                    let start =
-                        self.start(Process(length, size), own, back)?;
-                    self.along(length, &start, back)
-                },
-            )
-        });
-        let found: Vec<Look> =
-            both.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect();
+        let mut found = self.columns(&LENGTHS, own)?;
+        for lengths in BEYOND {
+            for pair in lengths.windows(2) {
+                if matters(&found, pair[0]) {
+                    found.extend(self.columns(&pair[1..], own)?);
+                }
+            }
+        }
         let again = found.par_iter().map(|look| self.again(look, &found));
         let found = again.collect::<Result<Vec<_>>>()?;
         if found.is_empty() {
             return Err(Error::inference("no free-form force has a mode"));
         }
         Ok(found)
+    }
+
+    /// The looks at some lengths, from both sides.
+    fn columns(&self, lengths: &[f64], own: &[f64]) -> Result<Vec<Look>> {
+        let (first, last) = (SIZES[0], SIZES[SIZES.len() - 1]);
+        let both = lengths.into_par_iter().flat_map(|&length| {
+            let sides = [(first, false), (last, true)].into_par_iter();
+            sides.map(move |(size, back)| {
+                let start = self.start(Process(length, size), own, back)?;
+                self.along(length, &start, back)
+            })
+        });
+        Ok(both.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
     }
 
     /// Where the looks start, as waves and own parameters: at no force, or
@@ -200,13 +231,31 @@ impl<P: Program> Sought<'_, P> {
                 Best::from(posterior, waves.as_slice(), own.as_slice())?;
             let Some(best) = start else { return Ok(None) };
             let climb = Climb { posterior, damping: 1e-2 };
-            let (peak, waves) = climb.climbed(own.clone(), best)?;
+            let (peak, waves, follows) = climb.climbed(own.clone(), best)?;
             Ok(peak.log_evidence().map(|log| {
                 let log_evidence = log + process.log_prior();
-                Look { process, waves, peak, log_evidence }
+                Look { process, waves, follows, peak, log_evidence }
             }))
         })
     }
+}
+
+/// Whether the looks at a length hold nearly as much as the best.
+fn matters(looks: &[Look], length: f64) -> bool {
+    let best = |of: &dyn Fn(&&Look) -> bool| {
+        let logs = looks.iter().filter(of).map(|look| look.log_evidence);
+        logs.fold(f64::NEG_INFINITY, f64::max)
+    };
+    best(&|_| true) - best(&|look| look.process.0 == length) < NEARLY
+}
+
+/// ln of the density of the own parameters about a place, the force integrated.
+struct Slope {
+    gradient: DVector<f64>,
+    /// About minus its Hessian.
+    precision: DMatrix<f64>,
+    /// By how much the best waves fall as the own parameters rise.
+    follows: DMatrix<f64>,
 }
 
 /// A climb of the own parameters, the force integrated.
@@ -216,22 +265,24 @@ struct Climb<'a, 'm> {
 }
 
 impl Climb<'_, '_> {
-    /// The peak that a start leads to, with the waves there.
+    /// The peak that a start leads to, with the waves there and how they
+    /// follow.
     fn climbed(
         mut self,
         mut own: DVector<f64>,
         mut best: Best,
-    ) -> Result<(Peak, DVector<f64>)> {
-        let (mut gradient, mut precision) = best.slope(self.posterior)?;
+    ) -> Result<(Peak, DVector<f64>, DMatrix<f64>)> {
+        let mut slope = best.slope(self.posterior)?;
         for _ in 0..STEPS {
-            match self.step(&own, &best, &gradient, &precision)? {
+            match self.step(&own, &best, &slope)? {
                 Some(next) => (own, best) = next,
                 None => break,
             }
-            (gradient, precision) = best.slope(self.posterior)?;
+            slope = best.slope(self.posterior)?;
         }
+        let Slope { precision, follows, .. } = slope;
         let height = best.height();
-        Ok((Peak { line: own, height, precision }, best.waves))
+        Ok((Peak { line: own, height, precision }, best.waves, follows))
     }
 
     /// A step that climbs, with ever more damping until one does; `None` where
@@ -240,9 +291,9 @@ impl Climb<'_, '_> {
         &mut self,
         own: &DVector<f64>,
         best: &Best,
-        gradient: &DVector<f64>,
-        precision: &DMatrix<f64>,
+        slope: &Slope,
     ) -> Result<Option<(DVector<f64>, Best)>> {
+        let Slope { gradient, precision, follows } = slope;
         for _ in 0..6 {
             let off = damped_step(precision, gradient, self.damping);
             if let Some(mut off) = off {
@@ -250,10 +301,10 @@ impl Climb<'_, '_> {
                     return Ok(None);
                 }
                 off *= (LONGEST / off.amax()).min(1.0);
+                let start = &best.waves - follows * &off;
                 let next = own + off;
-                let start = best.waves.as_slice();
-                let found =
-                    Best::from(self.posterior, start, next.as_slice())?;
+                let (start, own) = (start.as_slice(), next.as_slice());
+                let found = Best::from(self.posterior, start, own)?;
                 if let Some(found) = found
                     && found.height() > best.height()
                 {
@@ -269,7 +320,7 @@ impl Climb<'_, '_> {
 
 impl Best {
     /// ln of the density of the own parameters, the force integrated.
-    fn height(&self) -> f64 {
+    pub(super) fn height(&self) -> f64 {
         let before = DVector::from_column_slice(&self.line[..CELLS]);
         let pull = self.about.gradient.rows(0, CELLS);
         let gain = 0.5 * (&self.waves - before).dot(&pull);
@@ -278,12 +329,9 @@ impl Best {
             + 0.5 * n * std::f64::consts::TAU.ln()
     }
 
-    /// Its gradient, and about minus its Hessian: that of the density along
-    /// the ridge of the best forces, and how these narrow by differences.
-    fn slope(
-        &self,
-        posterior: &Posterior<'_>,
-    ) -> Result<(DVector<f64>, DMatrix<f64>)> {
+    /// Its slope: that of the density along the ridge of the best forces, and
+    /// how these narrow by differences.
+    fn slope(&self, posterior: &Posterior<'_>) -> Result<Slope> {
         let all = &self.about.precision;
         let n = self.line.len() - CELLS;
         let across = all.view((0, CELLS), (CELLS, n)).into_owned();
@@ -303,7 +351,7 @@ impl Best {
                 gradient[i] -= (sharpness(&there) - here) / NUDGE;
             }
         }
-        Ok((gradient, precision))
+        Ok(Slope { gradient, precision, follows })
     }
 }
 

@@ -28,8 +28,15 @@ const KEPT: usize = 8;
 const FREEDOM: f64 = 10.0;
 /// The most steps to where the force is best, and a gain of the log density
 /// below which a step more is not worth it.
-const STEPS: usize = 5;
+const STEPS: usize = 8;
 const ARRIVED: f64 = 0.1;
+/// From how many looks a start is taken.
+const NEAREST: usize = 6;
+/// By how much, in ln, the weight of a draw must exceed what a normal
+/// approximation holds to show that there is better, and how often that is
+/// looked for.
+const SURPRISE: f64 = 1.0;
+const AGAIN: usize = 4;
 
 /// A model with a free-form force, as one of the process and the model's own
 /// parameters.
@@ -43,11 +50,15 @@ impl<P: Program> Conditional for Marginal<'_, P> {
     fn held(&self, z: &[f64], seed: Seed) -> Result<Held> {
         let (process, own) = Process::parted(z);
         self.sought.under(process, |free, posterior| {
-            let start = self.nearest(z).waves.as_slice();
-            let Some(best) = Best::from(posterior, start, own)? else {
+            let start = self.start(&process, own, posterior)?;
+            let Some(mut best) = Best::from(posterior, &start, own)? else {
                 return Ok(Held::nothing());
             };
-            let mut rng = seed.rng();
+            if self.sought.program.events() > 1 {
+                let mut rng = seed.child(0).rng();
+                best = best.outdone(posterior, own, &mut rng)?;
+            }
+            let mut rng = seed.child(1).rng();
             let (waves, logs) = best.drawn(posterior, own, &mut rng)?;
             let total = log_sum_exp(logs.iter().copied());
             if total == f64::NEG_INFINITY {
@@ -64,21 +75,27 @@ impl<P: Program> Conditional for Marginal<'_, P> {
 }
 
 impl<P> Marginal<'_, P> {
-    /// The look that is most like a place.
-    fn nearest(&self, z: &[f64]) -> &Look {
-        let (process, own) = Process::parted(z);
-        let own = DVector::from_column_slice(own);
-        let off = |look: &Look| {
-            let off = (&look.peak.line - &own).norm_squared();
-            look.process.distance(&process) + off
-        };
-        let mut nearest = &self.looks[0];
-        for look in &self.looks {
-            if off(look) < off(nearest) {
-                nearest = look;
+    /// Waves to start from: the likeliest that the nearest looks have.
+    fn start(
+        &self,
+        process: &Process,
+        own: &[f64],
+        posterior: &Posterior<'_>,
+    ) -> Result<Vec<f64>> {
+        let off = |look: &Look| look.distance(process, own);
+        let mut near: Vec<(f64, &Look)> =
+            self.looks.iter().map(|look| (off(look), look)).collect();
+        near.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut best = (f64::NEG_INFINITY, vec![0.0; CELLS]);
+        for (_, look) in near.iter().take(NEAREST) {
+            for waves in look.waves_at(own) {
+                let height = height(posterior, &waves, own)?;
+                if height > best.0 {
+                    best = (height, waves.as_slice().to_vec());
+                }
             }
         }
-        nearest
+        Ok(best.1)
     }
 }
 
@@ -119,6 +136,33 @@ impl Best {
         Ok(found)
     }
 
+    /// The same, or better ones that draws about it lead to.
+    ///
+    /// The ground bends at the track's points: where the errors are small,
+    /// what is likely is rough, and more so the more events share a force.
+    fn outdone(
+        mut self,
+        posterior: &Posterior<'_>,
+        own: &[f64],
+        rng: &mut Rng,
+    ) -> Result<Self> {
+        for _ in 0..AGAIN {
+            let (waves, logs) = self.drawn(posterior, own, rng)?;
+            let drawn = logs.iter().zip(&waves);
+            let top = drawn.max_by(|a, b| a.0.total_cmp(b.0));
+            let surprise = self.height() + SURPRISE;
+            let Some((_, start)) = top.filter(|(log, _)| **log > surprise)
+            else {
+                break;
+            };
+            match Self::from(posterior, start, own)? {
+                Some(other) if other.height() > self.height() => self = other,
+                _ => break,
+            }
+        }
+        Ok(self)
+    }
+
     /// Waves drawn about the best, each with ln of its importance weight.
     fn drawn(
         &self,
@@ -135,9 +179,7 @@ impl Best {
                 continue;
             };
             for waves in [&self.waves + &off, &self.waves - &off] {
-                let line = [waves.as_slice(), own].concat();
-                let density = posterior.density(Point::Line(&line))?;
-                logs.push(density.on_line() - base);
+                logs.push(height(posterior, &waves, own)? - base);
                 all.push(waves.as_slice().to_vec());
             }
         }
@@ -169,17 +211,25 @@ fn climbed(
     waves: &DVector<f64>,
     step: &DVector<f64>,
     own: &[f64],
-    height: f64,
+    before: f64,
 ) -> Result<Option<DVector<f64>>> {
     for share in [1.0, 0.5, 0.2, 0.05] {
         let next = waves + share * step;
-        let line = [next.as_slice(), own].concat();
-        let density = posterior.density(Point::Line(&line))?;
-        if density.on_line() > height {
+        if height(posterior, &next, own)? > before {
             return Ok(Some(next));
         }
     }
     Ok(None)
+}
+
+/// ln of the density of waves and own parameters.
+fn height(
+    posterior: &Posterior<'_>,
+    waves: &DVector<f64>,
+    own: &[f64],
+) -> Result<f64> {
+    let line = [waves.as_slice(), own].concat();
+    Ok(posterior.density(Point::Line(&line))?.on_line())
 }
 
 /// A draw of Student's t distribution of as many dimensions as there are
