@@ -191,6 +191,7 @@ pub trait Mechanism:
     + ChangeOf<Grad<2>>
     + ChangeOf<Grad<4>>
     + ChangeOf<Grad<8>>
+    + ChangeOf<Grad<16>>
 {
     /// What of it concerns one of several events.
     fn of_event(&self, _event: usize) -> Concern {
@@ -237,4 +238,4 @@ macro_rules! change_kind {
         })*
     };
 }
-change_kind!(Plain, Grad<2>, Grad<4>, Grad<8>);
+change_kind!(Plain, Grad<2>, Grad<4>, Grad<8>, Grad<16>);

@@ -126,7 +126,8 @@ pub(super) fn information<P: Program>(
     let density = match z.len() {
         0..=2 => fill::<Grad<2>, P>(program, z, &mut gradient, &mut columns),
         3..=4 => fill::<Grad<4>, P>(program, z, &mut gradient, &mut columns),
-        _ => fill::<Grad<8>, P>(program, z, &mut gradient, &mut columns),
+        5..=16 => fill::<Grad<8>, P>(program, z, &mut gradient, &mut columns),
+        _ => fill::<Grad<16>, P>(program, z, &mut gradient, &mut columns),
     }?;
     let columns = DMatrix::from_vec(z.len(), columns.next, columns.numbers);
     let mut precision = &columns * columns.transpose();

@@ -31,4 +31,4 @@ macro_rules! number {
         })*
     };
 }
-number!(Plain, Grad<2>, Grad<4>, Grad<8>);
+number!(Plain, Grad<2>, Grad<4>, Grad<8>, Grad<16>);

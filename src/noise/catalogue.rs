@@ -31,6 +31,7 @@ pub trait NoiseEntry:
     + NoiseFor<Grad<2>>
     + NoiseFor<Grad<4>>
     + NoiseFor<Grad<8>>
+    + NoiseFor<Grad<16>>
     + Debug
     + Send
     + Sync
@@ -58,7 +59,7 @@ macro_rules! noise_kind {
         })*
     };
 }
-noise_kind!(Plain, Grad<2>, Grad<4>, Grad<8>);
+noise_kind!(Plain, Grad<2>, Grad<4>, Grad<8>, Grad<16>);
 
 /// Lists the noises: each is one entry here and one file.
 macro_rules! catalogue {

@@ -25,6 +25,7 @@ pub trait Law:
     + RateOf<Grad<2>>
     + RateOf<Grad<4>>
     + RateOf<Grad<8>>
+    + RateOf<Grad<16>>
     + Debug
     + Sync
 {
@@ -100,7 +101,7 @@ macro_rules! law_kind {
         })*
     };
 }
-law_kind!(Plain, Grad<2>, Grad<4>, Grad<8>);
+law_kind!(Plain, Grad<2>, Grad<4>, Grad<8>, Grad<16>);
 
 /// The laws that an event file may name: the built-in ones and a user's own.
 #[derive(Debug, Clone)]
