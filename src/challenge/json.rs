@@ -17,6 +17,7 @@ pub fn challenge_json(scored: &Scored) -> Value {
         "false_alarm_rate": s.false_alarms.value(),
         "median_iou": s.median_iou,
         "confusion": s.confusion,
+        "first_in_group": s.leads.value(),
         "in_group": s.in_group.value(),
         "detected": s.detected.value(),
         "rmse_within": s.within_noise.value(),
@@ -43,6 +44,7 @@ pub fn challenge_json(scored: &Scored) -> Value {
 fn errors(s: &Score) -> Value {
     json!({
         "top1": s.top1.se(),
+        "first_in_group": s.leads.se(),
         "in_group": s.in_group.se(),
         "false_alarm_rate": s.false_alarms.se(),
         "detected": s.detected.se(),

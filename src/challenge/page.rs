@@ -65,11 +65,12 @@ pub fn words(scored: &Scored) -> Vec<String> {
 fn found(s: &Score) -> String {
     format!(
         "{} cases, each with an effect that the diagnosis was not told of, \
-         or none: the effect is in the reported group in {}, and comes first \
-         in {}.",
+         or none: the effect is in the reported group in {}, comes first in \
+         {}, and has the most evidence, whatever the prior odds, in {}.",
         s.cases,
         told(&s.in_group),
-        told(&s.top1)
+        told(&s.top1),
+        told(&s.leads)
     )
 }
 

@@ -73,6 +73,12 @@ impl Outcome {
         self.answer.top().0 == self.truth.effect
     }
 
+    /// Whether the truth has the most evidence, whatever the prior odds: the
+    /// group begins with it.
+    pub fn leads(&self) -> bool {
+        self.answer.group.first().is_some_and(|n| n == self.truth.effect)
+    }
+
     /// Whether the truth is in the group.
     pub fn in_group(&self) -> bool {
         self.answer.group.iter().any(|name| name == self.truth.effect)
@@ -239,6 +245,8 @@ pub struct Score {
     /// The truth is most probable: effects of the catalogue without those
     /// that count by group only.
     pub top1: Share,
+    /// The truth begins the group: the same effects, by evidence alone.
+    pub leads: Share,
     /// The truth is in the group: effects of the catalogue.
     pub in_group: Share,
     /// A verdict other than `adequate` where nothing is hidden.
@@ -281,6 +289,7 @@ impl Score {
         Self {
             cases: outcomes.len(),
             top1: Share::count(singly().map(Outcome::first)),
+            leads: Share::count(singly().map(Outcome::leads)),
             top1_visible: Share::count(
                 singly().filter(seen).map(Outcome::first),
             ),

@@ -86,6 +86,15 @@ fn all_wrong() {
     assert_eq!(score.confusion["none"]["surge"], 1);
 }
 
+/// A small effect has more evidence than nothing, and less probability.
+#[test]
+fn the_group_goes_by_evidence() {
+    let mut one = outcome("surge", "none", 0.6);
+    one.answer.group = vec!["surge".into(), "none".into()];
+    let score = Score::of(&[one]);
+    assert_eq!((score.top1.hits, score.leads.hits), (0, 1));
+}
+
 #[test]
 fn calibration_by_hand() {
     // Nothing hidden: two cases of weight 1/4; two names: the patch once, of
