@@ -59,8 +59,8 @@ impl Process {
 const LENGTHS: [f64; 3] = [-1.0, 0.0, 1.0];
 const SIZES: [f64; 5] = [-2.0, -1.0, 0.0, 1.0, 2.0];
 const APART: f64 = 0.6;
-/// By which lengths the grid grows where its edge holds nearly as much as its
-/// best, in ln.
+/// By which lengths the grid grows, from either edge on, where its edge holds
+/// nearly as much as its best, in ln.
 const BEYOND: [&[f64]; 2] = [&[-1.0, -2.0], &[1.0, 2.0, 3.0]];
 const NEARLY: f64 = 4.0;
 /// Within this squared distance a look may learn from a better one, if that
@@ -242,11 +242,14 @@ impl<P: Program> Sought<'_, P> {
 
 /// Whether the looks at a length hold nearly as much as the best.
 fn matters(looks: &[Look], length: f64) -> bool {
-    let best = |of: &dyn Fn(&&Look) -> bool| {
-        let logs = looks.iter().filter(of).map(|look| look.log_evidence);
-        logs.fold(f64::NEG_INFINITY, f64::max)
-    };
-    best(&|_| true) - best(&|look| look.process.0 == length) < NEARLY
+    let there = looks.iter().filter(|look| look.process.0 == length);
+    most(looks.iter()) - most(there) < NEARLY
+}
+
+/// ln of what the best of some looks holds.
+fn most<'l>(looks: impl Iterator<Item = &'l Look>) -> f64 {
+    let logs = looks.map(|look| look.log_evidence);
+    logs.fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// ln of the density of the own parameters about a place, the force integrated.
@@ -319,16 +322,6 @@ impl Climb<'_, '_> {
 }
 
 impl Best {
-    /// ln of the density of the own parameters, the force integrated.
-    pub(super) fn height(&self) -> f64 {
-        let before = DVector::from_column_slice(&self.line[..CELLS]);
-        let pull = self.about.gradient.rows(0, CELLS);
-        let gain = 0.5 * (&self.waves - before).dot(&pull);
-        let n = CELLS as f64;
-        self.about.density.on_line() + gain - sharpness(&self.precision)
-            + 0.5 * n * std::f64::consts::TAU.ln()
-    }
-
     /// Its slope: that of the density along the ridge of the best forces, and
     /// how these narrow by differences.
     fn slope(&self, posterior: &Posterior<'_>) -> Result<Slope> {
@@ -361,8 +354,7 @@ impl Best {
 /// # Errors
 /// Looks without width.
 pub(super) fn proposal(looks: &[Look]) -> Result<Mixture> {
-    let logs = looks.iter().map(|look| look.log_evidence);
-    let best = logs.fold(f64::NEG_INFINITY, f64::max);
+    let best = most(looks.iter());
     let near = looks.iter().filter(|l| best - l.log_evidence < LEAST);
     let parts = near.filter_map(|look| {
         let n = look.peak.line.len();

@@ -89,9 +89,9 @@ impl<P> Marginal<'_, P> {
         let mut best = (f64::NEG_INFINITY, vec![0.0; CELLS]);
         for (_, look) in near.iter().take(NEAREST) {
             for waves in look.waves_at(own) {
-                let height = height(posterior, &waves, own)?;
-                if height > best.0 {
-                    best = (height, waves.as_slice().to_vec());
+                let log = log_density(posterior, &waves, own)?;
+                if log > best.0 {
+                    best = (log, waves.as_slice().to_vec());
                 }
             }
         }
@@ -134,6 +134,16 @@ impl Best {
             }
         }
         Ok(found)
+    }
+
+    /// ln of the density of the own parameters, the force integrated.
+    pub(super) fn height(&self) -> f64 {
+        let before = DVector::from_column_slice(&self.line[..CELLS]);
+        let pull = self.about.gradient.rows(0, CELLS);
+        let gain = 0.5 * (&self.waves - before).dot(&pull);
+        let n = CELLS as f64;
+        self.about.density.on_line() + gain - sharpness(&self.precision)
+            + 0.5 * n * std::f64::consts::TAU.ln()
     }
 
     /// The same, or better ones that draws about it lead to.
@@ -179,7 +189,7 @@ impl Best {
                 continue;
             };
             for waves in [&self.waves + &off, &self.waves - &off] {
-                logs.push(height(posterior, &waves, own)? - base);
+                logs.push(log_density(posterior, &waves, own)? - base);
                 all.push(waves.as_slice().to_vec());
             }
         }
@@ -215,7 +225,7 @@ fn climbed(
 ) -> Result<Option<DVector<f64>>> {
     for share in [1.0, 0.5, 0.2, 0.05] {
         let next = waves + share * step;
-        if height(posterior, &next, own)? > before {
+        if log_density(posterior, &next, own)? > before {
             return Ok(Some(next));
         }
     }
@@ -223,7 +233,7 @@ fn climbed(
 }
 
 /// ln of the density of waves and own parameters.
-fn height(
+fn log_density(
     posterior: &Posterior<'_>,
     waves: &DVector<f64>,
     own: &[f64],
