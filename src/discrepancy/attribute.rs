@@ -1,15 +1,13 @@
 //! Which mechanism explains the mismatch: evidence of each, and of pairs.
 
-use std::ops::Range;
-
 use rayon::prelude::*;
 
 use super::fit::{Fit, fit, spread};
-use crate::change::{Mechanism, Unknown};
+use super::ridges::{narrow_ridges, ridges};
+use crate::change::Mechanism;
 use crate::error::Result;
 use crate::infer::{Peaks, Progress, Ridge};
 use crate::model::{Posterior, Program, With};
-use crate::prior::AnyPrior;
 use crate::seed::Seed;
 
 /// What the evidence says of a model and of each mechanism added to it.
@@ -28,16 +26,6 @@ fn climbs(unknowns: usize) -> usize {
         1 => 10,
         2 => 16,
         _ => 32,
-    }
-}
-
-/// How many places along so many coordinates are kept to.
-fn places(held: usize) -> usize {
-    match held {
-        0 => 0,
-        1 => 32,
-        2 => 144,
-        _ => 300,
     }
 }
 
@@ -79,54 +67,11 @@ fn single<P: Program>(
         .into_iter()
         .map(|(place, _)| [place, none.own().to_vec()].concat())
         .collect();
-    let ridges = ridges(mechanism, &[], none.own(), seed.child(1));
+    let own = none.own();
+    let mut ridges = ridges(mechanism, &[], own, seed.child(1));
+    ridges.extend(narrow_ridges(mechanism, own));
     let backend = Peaks { starts: 4, from, ridges, ..Peaks::default() };
     fit(program, &[mechanism], &backend, seed.child(2))
-}
-
-/// The coordinates of a mechanism along which the data may tell little, with
-/// even places along them, for each of its amplitudes; `before` and `after`
-/// are where all others begin.
-fn ridges(
-    mechanism: &dyn Mechanism,
-    before: &[f64],
-    after: &[f64],
-    seed: Seed,
-) -> Vec<Ridge> {
-    let unknowns = mechanism.unknowns();
-    let one = |along: Range<usize>| {
-        let earlier = vec![0.0; along.start];
-        let later = vec![0.0; unknowns.len() - along.end];
-        let before = [before, &earlier].concat();
-        let after = [&later, after].concat();
-        ridge(&unknowns[along], &before, &after, seed)
-    };
-    mechanism.amplitudes().into_iter().map(one).collect()
-}
-
-/// Even places along an amplitude and where it is.
-///
-/// An amplitude that may have either sign follows from where its stretch is,
-/// nearly as in linear regression: there it is not among them.
-fn ridge(
-    along: &[Unknown],
-    before: &[f64],
-    after: &[f64],
-    seed: Seed,
-) -> Ridge {
-    let signed =
-        along.len() > 1 && matches!(along[0].prior, AnyPrior::Normal(..));
-    let free = usize::from(signed);
-    let held = (before.len() + free..before.len() + along.len()).collect();
-    let kept = &along[free..];
-    let amplitude = vec![0.0; free];
-    let places = spread(kept, places(kept.len()), seed)
-        .into_iter()
-        .map(|(place, apart)| {
-            ([before, &amplitude, &place, after].concat(), apart)
-        })
-        .collect();
-    Ridge { held, places }
 }
 
 /// A model whose mechanisms are known, with where it is best on the line.

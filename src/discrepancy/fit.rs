@@ -143,7 +143,7 @@ fn radical_inverse(mut i: u64, base: u64) -> f64 {
 }
 
 /// The place on the real line of a prior's quantile.
-fn on_line(prior: &AnyPrior, p: f64) -> f64 {
+pub(super) fn on_line(prior: &AnyPrior, p: f64) -> f64 {
     let x = prior.quantile(p).unwrap_or(0.0);
     let support = <AnyPrior as Prior<Plain>>::support(prior);
     let line = support.to_line(Real::<Plain>::new(x).value());

@@ -22,6 +22,7 @@ mod paste;
 mod phrases;
 mod pictures;
 mod place;
+mod ridges;
 mod signs;
 mod summary;
 #[cfg(test)]

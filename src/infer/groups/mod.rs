@@ -141,7 +141,7 @@ impl Peaks {
             let places = ridge.places.iter();
             let places =
                 places.map(|(at, apart)| (crossing(at), apart.clone()));
-            Some(Ridge { held, places: places.collect() })
+            Some(Ridge { held, places: places.collect(), narrow: false })
         });
         Self { from, ridges: ridges.collect(), ..self.clone() }
     }
