@@ -141,7 +141,8 @@ impl Peaks {
             let places = ridge.places.iter();
             let places =
                 places.map(|(at, apart)| (crossing(at), apart.clone()));
-            Some(Ridge { held, places: places.collect(), narrow: false })
+            let (places, narrow) = (places.collect(), ridge.narrow);
+            Some(Ridge { held, places, narrow })
         });
         Self { from, ridges: ridges.collect(), ..self.clone() }
     }
