@@ -135,9 +135,9 @@ fn narrow_peaks_are_not_left_out() {
             let name = mechanism.name();
             let log = known.iter().find(|(n, _)| *n == name).unwrap().1;
             let off = fit.log_evidence - log;
-            // Four standard errors, and what is not known of the other.
-            let most = 4.0 * fit.se.hypot(0.1);
-            assert!(off.abs() < most, "{name}, seed {seed}: {off} of {most}");
+            // What a missed peak costs is 1.5 at the least; sampling one as
+            // narrow as these has an error of 0.3.
+            assert!(off.abs() < 1.0, "{name}, seed {seed}: {off}");
         }
     }
 }
