@@ -123,9 +123,11 @@ fn narrow_peaks_are_not_left_out() {
     }
     let model = every_fifth(&folder);
     let mut candidates = catalogue(&model.event().extent(), &model.blocks());
-    // By tempering from the prior with 16 000 particles, within 0.1.
+    // Tempering from the prior with 16 000 particles says -48.3 and -49.3 of
+    // the last two, and has no answer for the surge (-50.4 and -49.4 with two
+    // seeds, the second +- 0.7): that is by 60 000 importance draws.
     let known =
-        [("surge", -50.4), ("entrainment", -48.25), ("friction-patch", -49.3)];
+        [("surge", -50.33), ("entrainment", -48.3), ("friction-patch", -49.3)];
     candidates.retain(|m| known.iter().any(|(name, _)| *name == m.name()));
     for seed in 1..=3 {
         let found = attribute(&model, &candidates, Seed::new(seed), &Quiet);
@@ -135,9 +137,10 @@ fn narrow_peaks_are_not_left_out() {
             let name = mechanism.name();
             let log = known.iter().find(|(n, _)| *n == name).unwrap().1;
             let off = fit.log_evidence - log;
-            // What a missed peak costs is 1.5 at the least; sampling one as
-            // narrow as these has an error of 0.3.
-            assert!(off.abs() < 1.0, "{name}, seed {seed}: {off}");
+            // What is asked of any seed, and 0.1 for what is known. Of 48
+            // seeds each, three were further off, all of the entrainment:
+            // two by 0.5, one by 1.2.
+            assert!(off.abs() < 0.4, "{name}, seed {seed}: {off}");
         }
     }
 }

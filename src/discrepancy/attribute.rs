@@ -62,12 +62,11 @@ fn single<P: Program>(
     seed: Seed,
 ) -> Result<Fit> {
     let unknowns = mechanism.unknowns();
-    let n = unknowns.len();
-    let from = spread(&unknowns, climbs(n), seed.child(0))
-        .into_iter()
-        .map(|(place, _)| [place, none.own().to_vec()].concat())
-        .collect();
     let own = none.own();
+    let from = spread(&unknowns, climbs(unknowns.len()), seed.child(0))
+        .into_iter()
+        .map(|(place, _)| [&place, own].concat())
+        .collect();
     let mut ridges = ridges(mechanism, &[], own, seed.child(1));
     ridges.extend(narrow_ridges(mechanism, own));
     let backend = Peaks { starts: 4, from, ridges, ..Peaks::default() };

@@ -191,7 +191,11 @@ pub(super) fn log_mean_weight(particles: &[Particle]) -> f64 {
 /// The relative error of a mean of `count` weights w = p/q, by draws of the
 /// posterior: E_q[w^2] / Z^2 = E_p[w] / Z. They may lie where draws of q never
 /// do, and there the weights are large.
-fn error_at(given: &[Particle], log_evidence: f64, count: usize) -> f64 {
+pub(super) fn error_at(
+    given: &[Particle],
+    log_evidence: f64,
+    count: usize,
+) -> f64 {
     let second = (log_mean_weight(given) - log_evidence).exp();
     ((second - 1.0).max(0.0) / count as f64).sqrt()
 }

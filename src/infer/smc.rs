@@ -617,6 +617,48 @@ impl Backend for Smc {
     }
 }
 
+/// So many weighted draws of a base, resampled and moved as particles of the
+/// posterior.
+pub(super) fn moved(
+    posterior: &Posterior<'_>,
+    base: Base,
+    found: &[Particle],
+    count: usize,
+    seed: Seed,
+) -> Result<Vec<Particle>> {
+    let smc = &Smc {
+        particles: count,
+        moves: 2.0,
+        forget: false,
+        refine: false,
+        ..Smc::default()
+    };
+    let logs: Vec<f64> = found.iter().map(Particle::log_weight).collect();
+    let total = super::log_sum_exp(logs.iter().copied());
+    let weights: Vec<f64> = logs.iter().map(|l| (l - total).exp()).collect();
+    let mut rng = seed.child(0).rng();
+    let particles = systematic(&weights, count, &mut rng)
+        .into_iter()
+        .map(|i| found[i].clone())
+        .collect();
+    let mut passage = Passage {
+        posterior,
+        base,
+        smc,
+        seed: seed.child(1),
+        homes: vec![0; count],
+        logs: vec![0.0],
+        particles,
+        temperature: 1.0,
+        steps: 0,
+        scale: 1.0,
+        memory: (0, 0.0),
+    };
+    passage.shuffle(&mut rng);
+    passage.move_all()?;
+    Ok(passage.particles)
+}
+
 fn fitted(passage: &Passage<'_, '_>, seed: Seed) -> Option<Mixture> {
     let step = passage.particles.len().div_ceil(2000);
     let draws: Vec<_> =
