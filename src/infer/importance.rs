@@ -191,11 +191,7 @@ pub(super) fn log_mean_weight(particles: &[Particle]) -> f64 {
 /// The relative error of a mean of `count` weights w = p/q, by draws of the
 /// posterior: E_q[w^2] / Z^2 = E_p[w] / Z. They may lie where draws of q never
 /// do, and there the weights are large.
-pub(super) fn error_at(
-    given: &[Particle],
-    log_evidence: f64,
-    count: usize,
-) -> f64 {
+fn error_at(given: &[Particle], log_evidence: f64, count: usize) -> f64 {
     let second = (log_mean_weight(given) - log_evidence).exp();
     ((second - 1.0).max(0.0) / count as f64).sqrt()
 }
@@ -230,7 +226,8 @@ pub(super) fn cut(found: &[Particle]) -> Vec<f64> {
     cut.into_iter().map(|w| w / total).collect()
 }
 
-fn normalised(particles: &[Particle]) -> Vec<f64> {
+/// Their importance weights, adding up to 1.
+pub(super) fn normalised(particles: &[Particle]) -> Vec<f64> {
     let logs = particles.iter().map(Particle::log_weight);
     let total = super::log_sum_exp(logs.clone());
     logs.map(|l| (l - total).exp()).collect()

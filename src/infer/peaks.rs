@@ -10,13 +10,14 @@
 //! their normal approximations leave out. All these make a mixture whose
 //! weights are learned from a first round of draws, and components are added
 //! where later ones miss them; importance sampling, with a share of the prior,
-//! corrects it; and where its weights stay poor, tempering from the mixture
-//! does the rest.
+//! corrects it. Weights that are good are not believed at once: draws that are
+//! moved on as the posterior has it tell of places that no draw reached. Where
+//! weights stay poor, tempering from the mixture does the rest.
 
 use rayon::prelude::*;
 
 use super::descent::{Peak, climb, climb_holding};
-use super::importance::{ImportanceSampling, cut, error_at, log_mean_weight};
+use super::importance::{ImportanceSampling, cut, log_mean_weight};
 use super::mixture::Mixture;
 use super::part::Part;
 use super::smc::{Base, Particle, Smc, effective, moved, population};
@@ -67,7 +68,8 @@ const LEAST: f64 = 10.0;
 const ONE: f64 = 1.0;
 /// An effective share that is enough with a Pareto tail index below 0.7, and
 /// one that is enough with an index below 1. Either passes where a tail is
-/// missed that no draw reaches, which it is for the walks to prevent.
+/// missed that no draw reaches, which it is for the walks to prevent, and for
+/// draws that are moved on to tell.
 pub(super) const ENOUGH: f64 = 0.1;
 pub(super) const AMPLE: f64 = 0.25;
 /// Rounds of importance sampling before tempering takes over: from which on
@@ -83,10 +85,11 @@ const ALIKE: f64 = 1.0;
 /// further one.
 const PASSES: u64 = 3;
 const CLOSE: f64 = 0.1;
-/// How many of the draws are moved on, and from which error by these on, in
-/// ln, the others missed something.
+/// How many of the draws are moved on, and which effective share is enough by
+/// these: half of what is by the draws themselves, for one mean of few weights
+/// scatters. It was 0.02 to 0.2 where nothing was missed.
 const SENT: usize = 300;
-const MISSED: f64 = 0.1;
+const REACHED: f64 = 0.05;
 /// The most components that a round adds.
 const ADDED: usize = 6;
 /// From how many of the best places on ridges climbs start. With 8 all lay on
@@ -167,12 +170,13 @@ impl Peaks {
                 mixture = taught(&mixture, &found, round, seed.child(2));
                 continue;
             }
-            let beyond = beyond(posterior, base, &found, seed.child(3))?;
-            if beyond.is_empty() {
-                let found = Some((found, seed.child(1)));
-                return Ok(Settled { mixture, found });
+            match beyond(posterior, &mixture, &found, seed.child(3))? {
+                Some(wider) => mixture = wider,
+                None => {
+                    let found = Some((found, seed.child(1)));
+                    return Ok(Settled { mixture, found });
+                }
             }
-            mixture = joined(mixture, &beyond, seed.child(2));
         }
         Ok(Settled { mixture, found: None })
     }
@@ -337,10 +341,9 @@ fn error(found: &Inference) -> f64 {
     found.evidence.as_ref().map_or(f64::INFINITY, |e| e.se)
 }
 
-/// As many draws of each of two sets.
+/// The draws of two sets as one.
 fn both(posterior: &Posterior<'_>, sets: [&Draws; 2]) -> Result<Draws> {
-    let each = sets.map(Draws::total).into_iter().min().unwrap_or(0);
-    let rows = sets.map(|set| set.thinned(each).concat());
+    let rows = sets.map(|set| set.thinned(set.total()).concat());
     let mut both = draws_of(posterior)?;
     both.push_chain(rows.concat(), None)?;
     Ok(both)
@@ -411,33 +414,30 @@ pub(super) fn mixture(parts: &[Part]) -> Result<Mixture> {
     })
 }
 
-/// Where draws that were moved on as the posterior has it come to, if a
-/// proposal is far too low there; nothing where it is not.
+/// A mixture with components for where its draws come to when they are moved
+/// on as the posterior has it, if by them too few are effective.
 ///
-/// Weights tell nothing of places that no draw reaches: errors with heavy tails
-/// in a real recording, correlated more, or less, were left out with one seed
-/// in 24, and stated with an error of 0.05 for an evidence 1.4 too low.
+/// E_q[w^2] / Z^2 = E_p[w] / Z for weights w = p/q, and draws of q tell nothing
+/// of places that none of them reaches. Errors with heavy tails in a real
+/// recording have two hills, and with one seed in 16 the higher was left out:
+/// a standard error of 0.06 was stated for an evidence 1.4 too low.
 fn beyond(
     posterior: &Posterior<'_>,
-    base: Base,
+    mixture: &Mixture,
     found: &[Particle],
     seed: Seed,
-) -> Result<Vec<Vec<f64>>> {
+) -> Result<Option<Mixture>> {
+    let base = Base::Mixture(mixture.clone());
     let moved = moved(posterior, base, found, SENT, seed)?;
     let log_evidence = log_mean_weight(found);
-    if error_at(&moved, log_evidence, found.len()) < MISSED {
-        return Ok(Vec::new());
+    if (log_evidence - log_mean_weight(&moved)).exp() > REACHED {
+        return Ok(None);
     }
-    Ok(moved.into_iter().map(|particle| particle.z).collect())
-}
-
-/// A mixture with components for places that it misses.
-fn joined(mixture: Mixture, missed: &[Vec<f64>], seed: Seed) -> Mixture {
-    let even = vec![1.0 / missed.len() as f64; missed.len()];
-    match Mixture::fit(missed, &even, ADDED, &mut seed.rng()) {
-        Some(added) => added.beside(mixture),
-        None => mixture,
-    }
+    let even = vec![1.0 / SENT as f64; SENT];
+    let targets: Vec<f64> =
+        moved.iter().map(|p| p.log_target() - log_evidence).collect();
+    let places: Vec<Vec<f64>> = moved.into_iter().map(|p| p.z).collect();
+    Ok(mixture.mended(&places, &even, &targets))
 }
 
 /// What a round of draws teaches the mixture: in the first how much each
@@ -469,22 +469,30 @@ pub(super) fn taught(
     })
 }
 
+/// The effective share of importance draws.
+fn share(found: &[Particle]) -> f64 {
+    let logs: Vec<f64> = found.iter().map(Particle::log_weight).collect();
+    effective(&logs, 1.0) / logs.len() as f64
+}
+
 pub(super) fn is_good(found: &[Particle], enough: f64) -> bool {
     let logs: Vec<f64> = found.iter().map(Particle::log_weight).collect();
-    let share = effective(&logs, 1.0) / logs.len() as f64;
+    let share = share(found);
     let (_, k) = psis(&logs);
     (share > enough && k < 0.7) || (share > AMPLE.max(enough) && k < 1.0)
 }
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::{DMatrix, DVector};
     use statrs::function::erf::erf;
 
     use super::*;
     use crate::error::{Outcome, Stop};
     use crate::infer::Quiet;
     use crate::model::{Label, Number, Program, Run};
-    use crate::prior::AnyPrior;
+    use crate::prior::{AnyPrior, Normal};
+    use crate::scalar::Real;
 
     /// b ~ N(0, 1) is asked for only where a ~ N(0, 1) is near 0.
     struct CutShort;
@@ -501,6 +509,59 @@ mod tests {
             run.scalar(Label::new("b", "1"), normal)?;
             Ok(())
         }
+    }
+
+    /// 1 was seen of N(x^2, 0.45): two hills, at 1 and -1, with a saddle of a
+    /// twelfth between them. 0 was seen of N(y_i, 0.25): with so many coordinates
+    /// the tails of a component on one hill do not reach the other.
+    struct Hills;
+
+    impl Program for Hills {
+        fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
+            let wide = AnyPrior::Normal(0.0, 300.0);
+            let x = run.scalar(Label::new("x", "1"), wide)?;
+            run.observe_each(&1.0, Normal::new(x * x, Real::new(0.45)))?;
+            for i in 0..5 {
+                let y = run.scalar(Label::new("y", "1").at(i), wide)?;
+                run.observe_each(&0.0, Normal::new(y, Real::new(0.25)))?;
+            }
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn draws_that_are_moved_on_tell_of_a_hill_that_is_missed() {
+        let posterior = Posterior::new(&Hills).unwrap();
+        let on = |hills: &[f64]| {
+            let part = |x: &f64| {
+                let mut at = DVector::zeros(6);
+                at[0] = *x;
+                (1.0, at, DMatrix::from_diagonal_element(6, 6, 0.06))
+            };
+            Mixture::of(hills.iter().map(part)).unwrap()
+        };
+        let drawn = |mixture: &Mixture| {
+            let base = Base::Mixture(mixture.clone());
+            population(&posterior, &base, 2000, Seed::new(1)).unwrap()
+        };
+        let wider = |mixture: &Mixture, found: &[Particle]| {
+            beyond(&posterior, mixture, found, Seed::new(2)).unwrap()
+        };
+        let both = on(&[1.0, -1.0]);
+        let all = drawn(&both);
+        assert!(wider(&both, &all).is_none());
+        let one = on(&[1.0]);
+        let half = drawn(&one);
+        let missed = log_mean_weight(&all) - log_mean_weight(&half);
+        // Half is missed, and by the draws a fifth are effective.
+        assert!((missed - 2f64.ln()).abs() < 0.1, "{missed}");
+        assert!(share(&half) > ENOUGH, "{}", share(&half));
+        let mended = wider(&one, &half).expect("a hill is missed");
+        let found = log_mean_weight(&drawn(&mended));
+        // Four standard errors of two means of 2000 draws of which a tenth
+        // are effective; to miss half costs 0.7.
+        let off = found - log_mean_weight(&all);
+        assert!(off.abs() < 4.0 * 2f64.sqrt() * 0.067, "{off}");
     }
 
     #[test]

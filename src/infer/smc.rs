@@ -18,6 +18,7 @@ use rand::seq::SliceRandom;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
+use super::importance::normalised;
 use super::memory::Memory;
 use super::mh::value;
 use super::mixture::Mixture;
@@ -617,8 +618,8 @@ impl Backend for Smc {
     }
 }
 
-/// So many weighted draws of a base, resampled and moved as particles of the
-/// posterior.
+/// So many of the weighted draws of a base, resampled and moved as particles
+/// of the posterior.
 pub(super) fn moved(
     posterior: &Posterior<'_>,
     base: Base,
@@ -626,18 +627,9 @@ pub(super) fn moved(
     count: usize,
     seed: Seed,
 ) -> Result<Vec<Particle>> {
-    let smc = &Smc {
-        particles: count,
-        moves: 2.0,
-        forget: false,
-        refine: false,
-        ..Smc::default()
-    };
-    let logs: Vec<f64> = found.iter().map(Particle::log_weight).collect();
-    let total = super::log_sum_exp(logs.iter().copied());
-    let weights: Vec<f64> = logs.iter().map(|l| (l - total).exp()).collect();
+    let smc = &Smc { moves: 2.0, forget: false, ..Smc::default() };
     let mut rng = seed.child(0).rng();
-    let particles = systematic(&weights, count, &mut rng)
+    let particles = systematic(&normalised(found), count, &mut rng)
         .into_iter()
         .map(|i| found[i].clone())
         .collect();
