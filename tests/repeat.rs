@@ -112,7 +112,7 @@ fn a_bent_tail_is_not_left_out() {
 
 /// A real recording, of every fifth value, where it is at hand: speeds that a
 /// jolt leaves lower are peaks a second wide, which even starts missed with
-/// most seeds, by 1.5 to 3 in ln.
+/// some seeds, by up to 3.5 in ln.
 #[test]
 fn narrow_peaks_are_not_left_out() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"))

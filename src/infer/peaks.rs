@@ -469,15 +469,14 @@ pub(super) fn taught(
     })
 }
 
-/// The effective share of importance draws.
-fn share(found: &[Particle]) -> f64 {
-    let logs: Vec<f64> = found.iter().map(Particle::log_weight).collect();
-    effective(&logs, 1.0) / logs.len() as f64
+/// The effective share of draws with such log weights.
+fn share(logs: &[f64]) -> f64 {
+    effective(logs, 1.0) / logs.len() as f64
 }
 
 pub(super) fn is_good(found: &[Particle], enough: f64) -> bool {
     let logs: Vec<f64> = found.iter().map(Particle::log_weight).collect();
-    let share = share(found);
+    let share = share(&logs);
     let (_, k) = psis(&logs);
     (share > enough && k < 0.7) || (share > AMPLE.max(enough) && k < 1.0)
 }
@@ -512,8 +511,8 @@ mod tests {
     }
 
     /// 1 was seen of N(x^2, 0.45): two hills, at 1 and -1, with a saddle of a
-    /// twelfth between them. 0 was seen of N(y_i, 0.25): with so many coordinates
-    /// the tails of a component on one hill do not reach the other.
+    /// twelfth between them. 0 was seen of N(y_i, 0.25): with so many
+    /// coordinates the tails of a component on one hill hardly reach the other.
     struct Hills;
 
     impl Program for Hills {
@@ -555,7 +554,8 @@ mod tests {
         let missed = log_mean_weight(&all) - log_mean_weight(&half);
         // Half is missed, and by the draws a fifth are effective.
         assert!((missed - 2f64.ln()).abs() < 0.1, "{missed}");
-        assert!(share(&half) > ENOUGH, "{}", share(&half));
+        let logs: Vec<f64> = half.iter().map(Particle::log_weight).collect();
+        assert!(share(&logs) > ENOUGH, "{}", share(&logs));
         let mended = wider(&one, &half).expect("a hill is missed");
         let found = log_mean_weight(&drawn(&mended));
         // Four standard errors of two means of 2000 draws of which a tenth

@@ -251,12 +251,23 @@ impl<'p, 'm> Passage<'p, 'm> {
     ) -> Result<Self> {
         let particles =
             population(posterior, &base, smc.particles, seed.child(0))?;
+        Ok(Self::of(posterior, smc, base, particles, seed.child(1)))
+    }
+
+    /// From particles of the base that there are.
+    fn of(
+        posterior: &'p Posterior<'m>,
+        smc: &'p Smc,
+        base: Base,
+        particles: Vec<Particle>,
+        seed: Seed,
+    ) -> Self {
         let islands = islands(particles.len());
-        Ok(Self {
+        Self {
             posterior,
             base,
             smc,
-            seed: seed.child(1),
+            seed,
             homes: (0..particles.len()).map(|i| i % islands).collect(),
             logs: vec![0.0; islands],
             particles,
@@ -264,7 +275,7 @@ impl<'p, 'm> Passage<'p, 'm> {
             steps: 0,
             scale: 1.0,
             memory: (0, 0.0),
-        })
+        }
     }
 
     /// Goes all the way.
@@ -633,19 +644,9 @@ pub(super) fn moved(
         .into_iter()
         .map(|i| found[i].clone())
         .collect();
-    let mut passage = Passage {
-        posterior,
-        base,
-        smc,
-        seed: seed.child(1),
-        homes: vec![0; count],
-        logs: vec![0.0],
-        particles,
-        temperature: 1.0,
-        steps: 0,
-        scale: 1.0,
-        memory: (0, 0.0),
-    };
+    let mut passage =
+        Passage::of(posterior, smc, base, particles, seed.child(1));
+    passage.temperature = 1.0;
     passage.shuffle(&mut rng);
     passage.move_all()?;
     Ok(passage.particles)
