@@ -1,6 +1,7 @@
 //! What is missing from a law of one's own: friction that is lower where the
 //! flow is deep, on a synthetic slope with a stretch that is rougher.
-use couloir::discrepancy::{Options, diagnose, mechanisms::find, summary};
+use couloir::diagnosis::{Options, diagnose, summary};
+use couloir::mechanism::catalogue::find;
 use couloir::{model::With, prelude::*};
 
 /// Dry friction under a flow of depth h: r = mu/(1 + h/2 m) g cos(theta).

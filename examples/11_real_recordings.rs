@@ -4,12 +4,13 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use couloir::discrepancy::{
+use couloir::diagnosis::{
     Diagnosis, Options, Sharing, Together, diagnose, diagnose_together, fit,
-    in_words, mechanisms::find,
+    in_words,
 };
-use couloir::infer::Peaks;
+use couloir::infer::LaplaceMixture;
 use couloir::io::{self, EventFile};
+use couloir::mechanism::catalogue::find;
 use couloir::model::Assembled;
 use couloir::prelude::*;
 use couloir::prior::AnyPrior;
@@ -110,7 +111,8 @@ fn predicted(paths: &[PathBuf], left: usize, name: &str) -> Result<f64> {
         name => Some(find(name, &extent, &[])?),
     };
     let added: Vec<_> = found.as_deref().into_iter().collect();
-    let known = fit(&together, &added, &Peaks::default(), Seed::new(1))?;
+    let known =
+        fit(&together, &added, &LaplaceMixture::default(), Seed::new(1))?;
     let count = added.iter().map(|m| m.unknowns().len()).sum::<usize>();
     let unseen = model(&paths[left], RATE, &[])?;
     let laws = unseen.friction_dimension();

@@ -6,9 +6,9 @@
 
 use std::ops::Deref;
 
-use crate::change::Change;
 use crate::context::Context;
 use crate::error::Stop;
+use crate::mechanism::Change;
 use crate::noise::{Conditional, Grid, Noise};
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;

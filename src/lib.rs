@@ -73,7 +73,7 @@
 //! | [`mod@model`] | one run of a model, asked in different ways |
 //! | [`infer`], [`predict`] | backends; predictions |
 //! | [`elpd`], [`io`], [`report`] | prediction of what was left out; event files in; tables, pictures and pages out |
-//! | [`calibrate`], [`discrepancy`], [`sbc`] | a whole calibration; what a model lacks; whether inference can be trusted |
+//! | [`calibrate`], [`diagnosis`], [`sbc`] | a whole calibration; what a model lacks; whether inference can be trusted |
 //! | [`mod@reproduce`], [`challenge`] | the paper's study, computed again; hidden effects, made without the engine, and the score |
 //! | [`cli`] | the command: nothing below it prints |
 //!
@@ -84,16 +84,16 @@
 pub mod block;
 pub mod calibrate;
 pub mod challenge;
-pub mod change;
 pub mod cli;
 pub mod context;
 pub mod declared;
-pub mod discrepancy;
+pub mod diagnosis;
 pub mod draws;
 pub mod elpd;
 pub mod error;
 pub mod infer;
 pub mod io;
+pub mod mechanism;
 pub mod model;
 pub mod noise;
 pub mod observe;

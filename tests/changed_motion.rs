@@ -5,8 +5,8 @@
 
 use std::collections::BTreeMap;
 
-use couloir::change::Mechanism;
-use couloir::discrepancy::mechanisms::{catalogue, find};
+use couloir::mechanism::Mechanism;
+use couloir::mechanism::catalogue::{catalogue, find};
 use couloir::model::{Assembled, Point, Posterior};
 use couloir::noise::{
     self, Alteration, Altered, Ar, Grid, Iid, Noise, Student,

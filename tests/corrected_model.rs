@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::LN_10;
 use std::sync::OnceLock;
 
-use couloir::discrepancy::{self, Diagnosis, Options, diagnose};
+use couloir::diagnosis::{self, Diagnosis, Options, diagnose};
 use couloir::model::Assembled;
 use couloir::noise;
 use couloir::prelude::*;
@@ -68,7 +68,7 @@ fn the_diagnosis_prints_this_model() {
     let found = found();
     assert_eq!(found.selected, ["turbulent-drag"]);
     assert_eq!(found.corrected.model, PRINTED);
-    assert!(discrepancy::page(found).contains("struct Before"));
+    assert!(diagnosis::page(found).contains("struct Before"));
 }
 
 #[test]

@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use couloir::discrepancy::{Diagnosis, Options, Verdict, diagnose};
+use couloir::diagnosis::{Diagnosis, Options, Verdict, diagnose};
 use couloir::infer::Quiet;
 use couloir::io;
 use couloir::model::Assembled;

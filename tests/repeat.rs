@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 
 use couloir::Error;
 use couloir::challenge::{Case, Mix, cases};
-use couloir::discrepancy::mechanisms::catalogue;
-use couloir::discrepancy::{attribute, fit, locate};
-use couloir::infer::{Backend, Peaks, Quiet, Smc};
+use couloir::diagnosis::{attribute, fit, locate};
+use couloir::infer::{Backend, LaplaceMixture, Quiet, Smc};
 use couloir::io::{load, parse_event};
+use couloir::mechanism::catalogue::catalogue;
 use couloir::model::{Assembled, Posterior, With};
 use couloir::observe::Series;
 use couloir::physics::forces::Axis;
@@ -38,7 +38,7 @@ fn model_of(case: &Case) -> Assembled {
 
 /// ln of the evidence of a free-form force over distance.
 fn free_force(model: &Assembled, seed: Seed) -> f64 {
-    let none = fit(model, &[], &Peaks::default(), seed).unwrap();
+    let none = fit(model, &[], &LaplaceMixture::default(), seed).unwrap();
     let extent = model.event().extent();
     let force = locate(model, &extent, Axis::Place, &none, seed).unwrap();
     none.log_evidence + force.log_bayes_factor

@@ -5,13 +5,13 @@
 
 use std::collections::BTreeMap;
 
-use couloir::change::Mechanism;
-use couloir::discrepancy::mechanisms::{FrictionPatch, find};
-use couloir::discrepancy::{
+use couloir::diagnosis::{
     Fit, Options, Sharing, Together, Verdict, diagnose, fit,
 };
 use couloir::draws::summarise;
-use couloir::infer::{Backend, Peaks, Quiet, Smc};
+use couloir::infer::{Backend, LaplaceMixture, Quiet, Smc};
+use couloir::mechanism::Mechanism;
+use couloir::mechanism::catalogue::{FrictionPatch, find};
 use couloir::model::{Assembled, Model, Point, Posterior, Program, With};
 use couloir::noise::{self, Iid, Noise};
 use couloir::physics::Track;
@@ -163,7 +163,7 @@ fn no_variant_of_what_a_model_has_is_looked_for() {
     let model = having("friction-step(time)", &BTreeMap::new());
     let extent = model.event().extent();
     let names = |blocks: &[String]| -> Vec<&str> {
-        let all = couloir::discrepancy::mechanisms::catalogue(&extent, blocks);
+        let all = couloir::mechanism::catalogue::catalogue(&extent, blocks);
         all.iter().map(|m| m.name()).collect()
     };
     assert!(names(&[]).contains(&"friction-step"));
@@ -209,7 +209,7 @@ fn sensors_are_shared_where_they_record_the_same() {
 
 #[test]
 fn with_nothing_shared_the_log_evidence_adds_up() {
-    let peaks = Peaks::default();
+    let peaks = LaplaceMixture::default();
     let of = |model: &Assembled, seed| -> Fit {
         fit(model, &[], &peaks, Seed::new(seed)).unwrap()
     };
@@ -247,7 +247,7 @@ fn what_events_have_in_common_is_integrated_as_all_at_once() {
         let all = together.catalogue(sharing);
         let found = all.iter().find(|m| m.name() == name).unwrap();
         let added = [found.as_ref()];
-        let peaks = Peaks::default();
+        let peaks = LaplaceMixture::default();
         let apart = fit(&together, &added, &peaks, Seed::new(5)).unwrap();
         let with = With::new(&together, &added);
         let posterior = Posterior::new(&with).unwrap();
@@ -274,9 +274,9 @@ fn what_events_have_in_common_is_integrated_as_all_at_once() {
 /// The width of the 90 % interval of the patch's delta_mu, and its middle.
 fn width(
     program: &impl Program,
-    mechanism: &dyn couloir::change::Mechanism,
+    mechanism: &dyn couloir::mechanism::Mechanism,
 ) -> (f64, f64) {
-    let peaks = Peaks { starts: 200, ..Peaks::default() };
+    let peaks = LaplaceMixture { starts: 200, ..LaplaceMixture::default() };
     let found = fit(program, &[mechanism], &peaks, Seed::new(4)).unwrap();
     let delta = &summarise(&found.draws)[0];
     assert_eq!(delta.name, "friction-patch.delta_mu");

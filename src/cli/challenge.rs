@@ -13,7 +13,7 @@ use crate::challenge::{
     Answer, Case, Coordinate, Interval, Mix, PowerTable, cases,
     challenge_json, page, power_cases, power_page, run, words,
 };
-use crate::discrepancy::{
+use crate::diagnosis::{
     Diagnosis, Options, Sharing, Together, diagnose, diagnose_together,
 };
 use crate::error::{Error, Result};

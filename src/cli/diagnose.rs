@@ -8,7 +8,7 @@ use clap::Args;
 use super::calibrate::pretty;
 use super::progress::Told;
 use super::{Output, Subject, width, written};
-use crate::discrepancy::{
+use crate::diagnosis::{
     Diagnosis, Odds, Options, Sharing, Together, diagnose, diagnose_together,
     page, pictures, summary,
 };

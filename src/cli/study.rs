@@ -1,9 +1,9 @@
 //! From the command line to a model: the event, with what was changed of it.
 
 use super::Subject;
-use crate::discrepancy::mechanisms::find;
 use crate::error::{Error, Result};
 use crate::io::{self, EventFile};
+use crate::mechanism::catalogue::find;
 use crate::model::Assembled;
 use crate::noise;
 use crate::physics::friction::Laws;

@@ -9,9 +9,9 @@
 
 use rayon::prelude::*;
 
-use super::importance::summed;
-use super::mixture::Mixture;
-use super::smc::Particle;
+use super::proposal::Mixture;
+use super::proposal::Particle;
+use super::weights::summed;
 use crate::error::Result;
 use crate::seed::Seed;
 

@@ -5,45 +5,25 @@
 //! what it cost. Every random number comes from the seed by a fixed path, so
 //! a run is the same to the last bit on any number of threads.
 
-mod bridge;
+mod backends;
+mod climb;
 mod conditional;
-mod descent;
-mod groups;
-mod importance;
-mod legendre;
-mod map;
-mod memory;
-mod mh;
-mod mixture;
-#[cfg(feature = "nuts")]
-mod nuts;
-mod part;
-mod peaks;
-mod quadrature;
-mod reciprocal;
+mod display;
+mod nested;
+mod proposal;
 pub(crate) mod simplex;
-mod smc;
 mod start;
-mod told;
 mod walk;
+mod weights;
 
-pub use bridge::Bridge;
+pub use backends::*;
+pub(crate) use climb::damped_step;
+pub use climb::{Peak, climb};
 pub(crate) use conditional::{Conditional, Held, Integral, Integration};
-pub(crate) use descent::damped_step;
-pub use descent::{Peak, climb};
-pub use groups::{Group, Grouped};
-pub use importance::ImportanceSampling;
-pub use map::{Map, Mode};
-pub use mh::{MetropolisHastings, Proposal};
-pub use mixture::Mixture;
-pub(crate) use mixture::student_constant;
-#[cfg(feature = "nuts")]
-pub use nuts::Nuts;
-pub use peaks::{Peaks, Ridge};
-pub use quadrature::{LEVELS, Marginal, Quadrature};
-pub use reciprocal::ReciprocalImportance;
-pub use smc::Smc;
-pub(crate) use smc::systematic;
+pub use nested::{Group, Grouped};
+pub use proposal::Mixture;
+pub(crate) use proposal::student_constant;
+pub(crate) use weights::systematic;
 
 use std::fmt::Debug;
 use std::time::Instant;

@@ -12,8 +12,8 @@
 use nalgebra::DVector;
 use rayon::prelude::*;
 
-use super::descent::{Peak, climb_holding};
-use super::part::Part;
+use super::climb::{Peak, climb_holding};
+use super::proposal::Part;
 use crate::error::Result;
 use crate::model::Posterior;
 

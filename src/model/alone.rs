@@ -4,8 +4,8 @@ use super::amount::Amount;
 use super::number::Number;
 use super::program::Program;
 use super::run::Run;
-use crate::change::Unknown;
 use crate::error::Outcome;
+use crate::mechanism::Unknown;
 
 /// A program for one of its events alone; itself a program.
 #[derive(Debug)]

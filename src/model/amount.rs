@@ -3,8 +3,8 @@
 use super::number::Number;
 use super::run::{Label, Run};
 use crate::block::List;
-use crate::change::Unknown;
 use crate::error::Stop;
+use crate::mechanism::Unknown;
 use crate::prior::{AnyPrior, Prior as _, Uniform};
 use crate::scalar::{Kind, Plain, Real};
 

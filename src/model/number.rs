@@ -3,8 +3,8 @@
 //! A model's body is generic; it is compiled for plain numbers and for three
 //! widths of gradient. More parameters than the widest take several passes.
 
-use crate::change::ChangeKind;
 use crate::context::Context;
+use crate::mechanism::ChangeKind;
 use crate::noise::NoiseKind;
 use crate::physics::friction::LawKind;
 use crate::scalar::{Grad, Kind, Plain};

@@ -82,12 +82,16 @@ pub struct Density {
 }
 
 impl Density {
-    /// Prior times likelihood in the parameters as named.
+    /// Prior times likelihood in the parameters as named; minus infinity
+    /// where the model rejects them.
     pub fn natural(&self) -> f64 {
+        if self.rejected.is_some() {
+            return f64::NEG_INFINITY;
+        }
         self.log_prior + self.log_likelihood
     }
 
-    /// The same as a density on the real line.
+    /// The same, as a density on the real line.
     pub fn on_line(&self) -> f64 {
         self.natural() + self.log_jacobian
     }

@@ -6,10 +6,10 @@
 
 use super::listener::{Declaration, Listener};
 use crate::block::List;
-use crate::change::Change;
 use crate::context::Context;
 use crate::declared::Declared;
 use crate::error::{Error, Outcome, Stop};
+use crate::mechanism::Change;
 use crate::noise::{Altered, Noise};
 use crate::observe::{Prediction, Series};
 use crate::prior::{Prior, Support};

@@ -4,8 +4,8 @@ use super::amount::Amount;
 use super::number::Number;
 use super::program::Program;
 use super::run::Run;
-use crate::change::{Change, Mechanism, Unknown};
 use crate::error::Outcome;
+use crate::mechanism::{Change, Mechanism, Unknown};
 
 /// A program under the changes of mechanisms; itself a program, so that every
 /// backend runs it and several nest.

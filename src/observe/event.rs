@@ -5,9 +5,9 @@ use std::borrow::Cow;
 use super::extent::path_length;
 use super::flow::Flow;
 use super::series::{Quantity, Series};
-use crate::change::Change;
 use crate::declared::Declared;
 use crate::error::{Error, Result, Stop};
+use crate::mechanism::Change;
 use crate::physics::forces::STEPS;
 use crate::physics::{
     Forces, Friction, Path, Release, Rest, State, Track, rest, rest_changed,

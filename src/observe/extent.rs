@@ -1,32 +1,8 @@
-//! How large an event is: what default priors of mechanisms are scaled to.
+//! How large an event is, from its first recording.
 
 use super::event::Event;
 use super::series::Quantity;
-
-/// Where a recording leads, how long it lasts, and how fast it goes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Extent {
-    /// Where the recorded run begins on the shared axis \[m\].
-    pub begin: f64,
-    /// How long it is \[m\].
-    pub run: f64,
-    /// The time of the last value \[s\].
-    pub duration: f64,
-    /// The upper quartile of the recorded speeds \[m/s\].
-    pub speed: f64,
-    /// The median time between values \[s\].
-    pub step: f64,
-    /// How far the release lies from the track's first point \[m\].
-    pub behind: f64,
-    /// The speed at t = 0 \[m/s\].
-    pub start_speed: f64,
-    /// Whether the ground carries the mass at all.
-    pub carried: bool,
-    /// Whether the ground bends along the run.
-    pub bends: bool,
-    /// Whether a mean over a window can be formed of what is recorded.
-    pub averages: bool,
-}
+use crate::mechanism::Extent;
 
 impl Event {
     /// The extent of its first recording.

@@ -9,7 +9,7 @@ mod extent;
 mod flow;
 mod series;
 
+pub use crate::mechanism::Extent;
 pub use event::{Event, EventBuilder};
-pub use extent::Extent;
 pub use flow::{Flow, Prediction, Recorded};
 pub use series::{Quantity, Series};

@@ -1,4 +1,4 @@
-use couloir::discrepancy::mechanisms::find;
+use couloir::mechanism::catalogue::find;
 use couloir::infer::Evidence;
 use couloir::model::With;
 use couloir::prelude::*;

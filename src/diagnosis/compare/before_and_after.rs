@@ -1,0 +1,275 @@
+//! A fitted model's figures: how it predicts what was recorded.
+
+use std::f64::consts::LN_10;
+
+use crate::diagnosis::compare::check::stationary_sd;
+use crate::diagnosis::compare::least_squares::least_squares;
+use crate::diagnosis::evidence::fit::Fit;
+use crate::diagnosis::findings::{Improvement, Pair, Pictured};
+use crate::draws::{Draws, uncorrelated_p};
+use crate::elpd::leave_one_out;
+use crate::error::{Error, Result};
+use crate::infer::{Backend, LaplaceMixture, Quiet, climb};
+use crate::mechanism::Mechanism;
+use crate::model::{Point, Posterior, Program, With};
+use crate::observe::{Event, Quantity, Series};
+use crate::predict::{Bands, predictive_of_all, rmse};
+use crate::seed::Seed;
+
+/// A model to be shown: what is added, how it was fitted, and a seed.
+pub(crate) struct Shown<'a> {
+    pub(crate) mechanisms: Vec<&'a dyn Mechanism>,
+    pub(crate) fit: &'a Fit,
+    pub(crate) first: Seed,
+    /// Whether one climb has to do for the held-out stretch: the force of
+    /// free form has too many unknowns for more.
+    pub(crate) rough: bool,
+}
+
+impl Shown<'_> {
+    pub(crate) fn names(&self) -> Vec<String> {
+        self.mechanisms.iter().map(|m| m.name().to_owned()).collect()
+    }
+}
+
+/// The figures of one fitted model, over all recordings.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Figures {
+    pub(crate) rmse: f64,
+    pub(crate) elpd: f64,
+    pub(crate) heldout_rmse: f64,
+    pub(crate) coverage90: f64,
+    pub(crate) ljung_box_p: f64,
+    pub(crate) least_squares: f64,
+    pub(crate) stationary_sd: f64,
+    pub(crate) innovations: Vec<Vec<f64>>,
+    /// Of each recording.
+    pub(crate) bands: Vec<Bands>,
+    /// Where the mass is at the recorded times, on the shared axis [m], of
+    /// each recording.
+    pub(crate) places: Vec<Vec<f64>>,
+}
+
+/// The share of the values that the held-out stretch is predicted from.
+const KNOWN: f64 = 0.7;
+
+/// The figures of a model on the recordings of its events.
+pub(crate) fn show<P: Program>(
+    program: &P,
+    events: &[&Event],
+    shown: &Shown<'_>,
+) -> Result<Figures> {
+    let recorded = recordings(events);
+    if recorded.is_empty() {
+        return Err(Error::input("the event has no recording"));
+    }
+    let with = With::new(program, &shown.mechanisms);
+    let posterior = Posterior::new(&with)?;
+    let draws = &shown.fit.draws;
+    let times: Vec<&[f64]> =
+        recorded.iter().map(|(_, series)| series.times()).collect();
+    let bands = predictive_of_all(&posterior, draws, &times, shown.first)?;
+    let (_, found) = posterior.collect(Point::Line(&shown.fit.best))?;
+    let predicted = mean_prediction(&posterior, draws)?;
+    let values = |(_, series): &(&Event, &Series)| series.values().to_vec();
+    let values: Vec<Vec<f64>> = recorded.iter().map(values).collect();
+    let places = recorded.iter().zip(&predicted);
+    Ok(Figures {
+        rmse: rmse(&values.concat(), &predicted.concat()),
+        elpd: leave_one_out(&posterior, draws).map_or(f64::NAN, |l| l.elpd),
+        heldout_rmse: held_out(program, shown, &values)?,
+        coverage90: coverage(&bands, &values),
+        ljung_box_p: uncorrelated(&found.innovations),
+        least_squares: match shown.rough {
+            true => f64::NAN,
+            false => least_squares(&posterior, shown.fit, &values)?,
+        },
+        stationary_sd: stationary_sd(draws).unwrap_or(f64::NAN),
+        places: places
+            .map(|((event, series), p)| places_of(event, series, p))
+            .collect(),
+        innovations: found.innovations,
+        bands,
+    })
+}
+
+/// All series with their events, in the order in which models score them.
+pub(crate) fn recordings<'e>(
+    events: &[&'e Event],
+) -> Vec<(&'e Event, &'e Series)> {
+    events
+        .iter()
+        .flat_map(|&event| event.recordings().map(move |s| (event, s)))
+        .collect()
+}
+
+/// The share of all values inside their bands.
+fn coverage(bands: &[Bands], values: &[Vec<f64>]) -> f64 {
+    let inside: f64 = bands
+        .iter()
+        .zip(values)
+        .map(|(band, values)| band.coverage(values) * values.len() as f64)
+        .sum();
+    inside / values.iter().map(Vec::len).sum::<usize>().max(1) as f64
+}
+
+/// The least p of no autocorrelation, for the number of series (Bonferroni).
+fn uncorrelated(innovations: &[Vec<f64>]) -> f64 {
+    let count = innovations.len() as f64;
+    innovations
+        .iter()
+        .map(|series| uncorrelated_p(series))
+        .filter(|p| p.is_finite())
+        .map(|p| (p * count).min(1.0))
+        .fold(f64::NAN, f64::min)
+}
+
+/// Draws of all chains, thinned to a few hundred.
+pub(crate) fn rows_of(draws: &Draws) -> Vec<&[f64]> {
+    draws.thinned(400)
+}
+
+/// The posterior mean of what is predicted for each value of each series.
+fn mean_prediction(
+    posterior: &Posterior<'_>,
+    draws: &Draws,
+) -> Result<Vec<Vec<f64>>> {
+    let mut sums: Vec<Vec<f64>> = Vec::new();
+    let mut count = 0.0;
+    for row in rows_of(draws) {
+        let (density, found) = posterior.collect(Point::Natural(row))?;
+        if density.rejected.is_some() {
+            continue;
+        }
+        if sums.is_empty() {
+            sums = found.predictions;
+        } else {
+            for (sum, one) in sums.iter_mut().zip(found.predictions) {
+                sum.iter_mut().zip(one).for_each(|(s, p)| *s += p);
+            }
+        }
+        count += 1.0;
+    }
+    for sum in &mut sums {
+        sum.iter_mut().for_each(|s| *s /= count);
+    }
+    Ok(sums)
+}
+
+/// The RMSE over the last values, of the model fitted to those before.
+fn held_out<P: Program>(
+    program: &P,
+    shown: &Shown<'_>,
+    values: &[Vec<f64>],
+) -> Result<f64> {
+    let with = With::new(program, &shown.mechanisms).knowing(KNOWN);
+    let posterior = Posterior::new(&with)?;
+    let plain = With::new(program, &shown.mechanisms);
+    let whole = Posterior::new(&plain)?;
+    let predicted = if shown.rough {
+        let Some(peak) = climb(&posterior, &shown.fit.best)? else {
+            return Ok(f64::NAN);
+        };
+        whole.collect(Point::Line(peak.line.as_slice()))?.1.predictions
+    } else {
+        let search = LaplaceMixture {
+            starts: 6,
+            from: vec![shown.fit.best.clone()],
+            draws: 1000,
+            ..LaplaceMixture::default()
+        };
+        let seed = shown.first.child(1);
+        let found = search.explore(&posterior, seed, &Quiet)?;
+        let Some(draws) = found.draws else { return Ok(f64::NAN) };
+        mean_prediction(&whole, &draws)?
+    };
+    Ok(rmse(&last(values), &last(&predicted)))
+}
+
+/// The values of all series that are held out.
+fn last(series: &[Vec<f64>]) -> Vec<f64> {
+    let of = |values: &Vec<f64>| {
+        let known = (KNOWN * values.len() as f64) as usize;
+        values[known.clamp(1, values.len())..].to_vec()
+    };
+    series.iter().flat_map(of).collect()
+}
+
+/// Where the mass is at the recorded times: the predicted speeds summed by
+/// the trapezoidal rule, or the predicted positions.
+fn places_of(event: &Event, series: &Series, predicted: &[f64]) -> Vec<f64> {
+    let start = event.track().origin() + event.start();
+    if series.quantity() == Quantity::Position {
+        return predicted.iter().map(|s| start + s).collect();
+    }
+    let (mut time, mut speed) = (0.0, event.release_speed());
+    let mut place = start;
+    series
+        .times()
+        .iter()
+        .zip(predicted)
+        .map(|(&t, &p)| {
+            let next = match series.quantity() {
+                Quantity::Acceleration => speed + p * (t - time),
+                _ => p,
+            };
+            place += 0.5 * (speed + next) * (t - time);
+            (time, speed) = (t, next);
+            place
+        })
+        .collect()
+}
+
+/// What going from one model to the other brings.
+pub(crate) fn improvement(
+    none: &Fit,
+    fit: &Fit,
+    old: &Figures,
+    new: &Figures,
+) -> Improvement {
+    let pair =
+        |of: fn(&Figures) -> f64| Pair { before: of(old), after: of(new) };
+    let gain = fit.log_evidence - none.log_evidence;
+    Improvement {
+        log10_bayes_factor: gain / LN_10,
+        rmse: pair(|f| f.rmse),
+        elpd: pair(|f| f.elpd),
+        heldout_rmse: pair(|f| f.heldout_rmse),
+        coverage90: pair(|f| f.coverage90),
+        ljung_box_p: pair(|f| f.ljung_box_p),
+        least_squares: pair(|f| f.least_squares),
+        stationary_sd: pair(|f| f.stationary_sd),
+    }
+}
+
+/// Each recording with what both models predict of it.
+pub(crate) fn pictured(
+    events: &[&Event],
+    before: &Figures,
+    after: &Figures,
+    corrected: bool,
+) -> Vec<Pictured> {
+    recordings(events)
+        .into_iter()
+        .enumerate()
+        .map(|(i, (event, series))| {
+            let (x, z) = event.track().points();
+            Pictured {
+                event: event.name().to_owned(),
+                quantity: series.quantity().name().to_owned(),
+                unit: series.quantity().unit().to_owned(),
+                times: series.times().to_vec(),
+                values: series.values().to_vec(),
+                places: after.places[i].clone(),
+                before: before.bands[i].clone(),
+                after: if corrected {
+                    after.bands[i].clone()
+                } else {
+                    Bands::default()
+                },
+                track: (x.to_vec(), z.to_vec()),
+                ..Pictured::default()
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,5 @@
+//! From evidence to a decision: probabilities, the verdict, and which
+//! mechanisms are added.
+
+pub(crate) mod choose;
+pub(crate) mod judge;

@@ -1,0 +1,218 @@
+//! The whole diagnosis: check, locate, attribute, model, show.
+
+use std::time::Instant;
+
+use crate::diagnosis::compare::before_and_after::{
+    Shown, improvement, pictured, show,
+};
+use crate::diagnosis::compare::check::baseline;
+use crate::diagnosis::decide::choose::{Choice, Chosen};
+use crate::diagnosis::decide::judge::{
+    Beforehand, check_odds, group, judge, separating, told, verdict,
+};
+use crate::diagnosis::evidence::attribute::attribute;
+use crate::diagnosis::evidence::fit::Fit;
+use crate::diagnosis::findings::{Diagnosis, Verdict};
+use crate::diagnosis::locate::{FreeForce, free_fit, locate_all};
+use crate::diagnosis::options::Options;
+use crate::diagnosis::tell::paste::corrected;
+use crate::diagnosis::tell::place::{mark, mismatch};
+use crate::diagnosis::together::{Sharing, Together};
+use crate::draws::summarise;
+use crate::error::{Error, Result};
+use crate::infer::Progress;
+use crate::mechanism::Mechanism;
+use crate::mechanism::catalogue::catalogue;
+use crate::model::{Assembled, Program};
+use crate::observe::{Event, Extent};
+use crate::seed::Seed;
+
+/// Finds where a model and a recording differ and what was left out.
+///
+/// # Errors
+/// An improper prior, odds of what is not weighed, an event without a
+/// recording, or a model that fails.
+pub fn diagnose<P: Program>(
+    program: &P,
+    event: &Event,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Diagnosis> {
+    let extent = event.extent();
+    let all = catalogue(&extent, &options.blocks);
+    Subject { program, events: vec![event], extent, all }
+        .diagnose(options, progress)
+}
+
+/// Finds where several recordings differ from one model and what was left out
+/// of all of them; evidence adds up.
+///
+/// # Errors
+/// As [`diagnose`].
+pub fn diagnose_together(
+    program: &Together,
+    sharing: Sharing,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Diagnosis> {
+    let events = program.events().iter().map(Assembled::event).collect();
+    let (extent, all) = (program.extent(), program.catalogue(sharing));
+    Subject { program, events, extent, all }.diagnose(options, progress)
+}
+
+/// A model with its events and what may be missing from it.
+struct Subject<'a, P> {
+    program: &'a P,
+    events: Vec<&'a Event>,
+    extent: Extent,
+    all: Vec<Box<dyn Mechanism>>,
+}
+
+impl<P: Program> Subject<'_, P> {
+    fn diagnose(
+        &self,
+        options: &Options,
+        progress: &dyn Progress,
+    ) -> Result<Diagnosis> {
+        let begun = Instant::now();
+        let seed = Seed::new(options.seed);
+        let (program, all) = (self.program, &self.all[..]);
+        check_odds(&options.odds, all)?;
+        let found = attribute(program, all, seed.child(0), progress)?;
+        progress.begin("locating the mismatch", None);
+        let forces =
+            locate_all(program, &self.extent, &found.none, seed.child(10))?;
+        let mut judged = judge(&found, all, &forces, &options.odds);
+        let verdict = verdict(&judged);
+        progress.begin("weighing pairs", None);
+        let choice = Choice {
+            program,
+            all,
+            found: &found,
+            judged: &judged,
+            beforehand: Beforehand::of(&judged, &options.odds),
+            seed,
+        };
+        let chosen = choice.choose(verdict)?;
+        let (verdict, chosen) = choice.explained(verdict, chosen);
+        if let Some(chosen) = &chosen {
+            chosen.call(&mut judged, all);
+        }
+        progress.begin("showing", None);
+        let free = self.free_form(verdict, &forces, &found.none)?;
+        let after = shown_after(chosen.as_ref(), free.as_ref(), all, seed);
+        let told = self.told(&found.none, after.as_ref(), options, seed)?;
+        let group = group(&judged);
+        let rivals = chosen.as_ref().map(|c| c.rivals(all, &found.none));
+        let mut diagnosis = Diagnosis {
+            verdict,
+            rivals: rivals.unwrap_or_default(),
+            separating: separating(&group, &judged),
+            group,
+            mechanisms: judged,
+            ..told
+        };
+        self.write_out(&mut diagnosis, chosen.as_ref(), &forces, options);
+        diagnosis.forces = forces;
+        diagnosis.seconds = begun.elapsed().as_secs_f64();
+        Ok(diagnosis)
+    }
+
+    /// Where the mismatch is, and what the corrected model is.
+    fn write_out(
+        &self,
+        diagnosis: &mut Diagnosis,
+        chosen: Option<&Chosen>,
+        forces: &[FreeForce],
+        options: &Options,
+    ) {
+        let all = &self.all[..];
+        let added = chosen.map(|c| c.mechanisms(all)).unwrap_or_default();
+        let reaches = chosen.map(|c| c.reaches(all)).unwrap_or_default();
+        let (verdict, pictured) = (diagnosis.verdict, &diagnosis.pictured);
+        let quantity = pictured.first().map_or("", |p| &p.quantity);
+        diagnosis.corrected = corrected(&added, options, quantity);
+        diagnosis.mismatch =
+            mismatch(verdict, &reaches, forces, &self.events, pictured);
+        mark(diagnosis, &self.events);
+    }
+
+    /// The fit of the likeliest free-form force, where nothing else explains
+    /// the recordings.
+    fn free_form(
+        &self,
+        verdict: Verdict,
+        forces: &[FreeForce],
+        none: &Fit,
+    ) -> Result<Option<(Box<dyn Mechanism>, Fit)>> {
+        if verdict != Verdict::Unexplained {
+            return Ok(None);
+        }
+        let force = most_probable(forces)?;
+        free_fit(self.program, &self.extent, force, none).map(Some)
+    }
+
+    /// Before, after, and what both predict.
+    fn told(
+        &self,
+        none: &Fit,
+        after: Option<&Shown<'_>>,
+        options: &Options,
+        seed: Seed,
+    ) -> Result<Diagnosis> {
+        let before = Shown {
+            mechanisms: Vec::new(),
+            fit: none,
+            first: seed.child(30),
+            rough: false,
+        };
+        let old = show(self.program, &self.events, &before)?;
+        let new = match after {
+            Some(after) => show(self.program, &self.events, after)?,
+            None => old.clone(),
+        };
+        let fit = after.map_or(none, |after| after.fit);
+        let names: Vec<&str> =
+            self.events.iter().map(|event| event.name()).collect();
+        let mut warnings = none.warnings.clone();
+        warnings.extend(fit.warnings.iter().cloned());
+        warnings.dedup();
+        Ok(Diagnosis {
+            event: names.join(" + "),
+            baseline: baseline(none, &old, self.events[0], options),
+            selected: after.map(Shown::names).unwrap_or_default(),
+            improvement: improvement(none, fit, &old, &new),
+            parameters: told(&summarise(&fit.draws), None)
+                .into_iter()
+                .filter(|p| !p.name.starts_with("unknown."))
+                .collect(),
+            pictured: pictured(&self.events, &old, &new, after.is_some()),
+            draws: Some(fit.draws.clone()),
+            warnings,
+            ..Diagnosis::default()
+        })
+    }
+}
+
+/// What the corrected model is, to be shown.
+fn shown_after<'a>(
+    chosen: Option<&'a Chosen>,
+    free: Option<&'a (Box<dyn Mechanism>, Fit)>,
+    all: &'a [Box<dyn Mechanism>],
+    seed: Seed,
+) -> Option<Shown<'a>> {
+    let (mechanisms, fit, rough) = match (chosen, free) {
+        (Some(chosen), _) => (chosen.mechanisms(all), &chosen.fit, false),
+        (None, Some((force, fit))) => (vec![force.as_ref()], fit, true),
+        (None, None) => return None,
+    };
+    Some(Shown { mechanisms, fit, first: seed.child(40), rough })
+}
+
+/// The free-form force along the axis with the most evidence.
+fn most_probable(forces: &[FreeForce]) -> Result<&FreeForce> {
+    forces
+        .iter()
+        .max_by(|a, b| a.log_bayes_factor.total_cmp(&b.log_bayes_factor))
+        .ok_or_else(|| Error::inference("no free-form force was inferred"))
+}

@@ -1,0 +1,151 @@
+//! A model with mechanisms, fitted: evidence, draws, and the best place.
+
+use rand::RngExt;
+
+use crate::diagnosis::evidence::apart::explore;
+use crate::draws::Draws;
+use crate::error::{Error, Result};
+use crate::infer::{Backend, LaplaceMixture, Quiet};
+use crate::mechanism::{Mechanism, Unknown};
+use crate::model::{Point, Posterior, Program, With};
+use crate::prior::{AnyPrior, Prior};
+use crate::scalar::{Plain, Real};
+use crate::seed::Seed;
+
+/// What a fit found.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// ln p(recording | model).
+    pub log_evidence: f64,
+    /// Its standard error.
+    pub se: f64,
+    /// Posterior draws as named, the mechanisms' parameters first.
+    pub draws: Draws,
+    /// The likeliest draw, on the real line.
+    pub best: Vec<f64>,
+    /// How many parameters the mechanisms have.
+    pub added: usize,
+    /// What to know before trusting it.
+    pub warnings: Vec<String>,
+}
+
+impl Fit {
+    /// Where the mechanisms' parameters are at the best place.
+    pub fn mechanism(&self) -> &[f64] {
+        &self.best[..self.added]
+    }
+
+    /// Where the model's own parameters are at the best place.
+    pub fn own(&self) -> &[f64] {
+        &self.best[self.added..]
+    }
+}
+
+/// Fits a program with mechanisms, looking for modes as told.
+///
+/// # Errors
+/// An improper prior, or a model that fails.
+pub fn fit<P: Program>(
+    program: &P,
+    mechanisms: &[&dyn Mechanism],
+    backend: &LaplaceMixture,
+    seed: Seed,
+) -> Result<Fit> {
+    let with = With::new(program, mechanisms);
+    let posterior = Posterior::new(&with)?;
+    let found = match program.events() {
+        1 => backend.explore(&posterior, seed, &Quiet)?,
+        _ => explore(program, mechanisms, &posterior, backend, seed)?,
+    };
+    let (Some(draws), Some(evidence)) = (found.draws, found.evidence) else {
+        return Err(Error::inference("a fit without draws or evidence"));
+    };
+    Ok(Fit {
+        log_evidence: evidence.log,
+        se: evidence.se,
+        best: likeliest(&posterior, &draws)?,
+        draws,
+        added: with.added(),
+        warnings: found.warnings,
+    })
+}
+
+/// The draw with the highest density, on the real line.
+pub(crate) fn likeliest(
+    posterior: &Posterior<'_>,
+    draws: &Draws,
+) -> Result<Vec<f64>> {
+    let mut best = (f64::NEG_INFINITY, Vec::new());
+    for row in draws.thinned(400) {
+        let density = posterior.density(Point::Natural(row))?.natural();
+        if best.1.is_empty() || density > best.0 {
+            best = (density, row.to_vec());
+        }
+    }
+    posterior.line(&best.1)
+}
+
+/// Even places in the prior of some unknowns, on the real line, with how far
+/// the next ones lie: Halton's points, shifted at random.
+pub(crate) fn spread(
+    unknowns: &[Unknown],
+    count: usize,
+    seed: Seed,
+) -> Vec<(Vec<f64>, Vec<f64>)> {
+    let mut rng = seed.rng();
+    let shifts: Vec<f64> = unknowns.iter().map(|_| rng.random()).collect();
+    let step = (count as f64).powf(-1.0 / unknowns.len() as f64);
+    (1..=count as u64)
+        .map(|i| {
+            unknowns
+                .iter()
+                .zip(PRIMES.into_iter().cycle())
+                .zip(&shifts)
+                .map(|((unknown, base), shift)| {
+                    let p = (radical_inverse(i, base) + shift).fract();
+                    place(&unknown.prior, p, step)
+                })
+                .unzip()
+        })
+        .collect()
+}
+
+/// The place on the line of a prior's quantile, and how far it is to those
+/// half a step away.
+///
+/// Steps are even in the angle whose sin^2 is the probability: places lie
+/// denser at the ends of a prior, where a short stretch, or one at the very
+/// start of the run, has a mode of its own.
+fn place(prior: &AnyPrior, p: f64, step: f64) -> (f64, f64) {
+    let at = |p: f64| {
+        on_line(prior, (p * std::f64::consts::FRAC_PI_2).sin().powi(2))
+    };
+    let edge = 0.25 * step;
+    let middle = p.clamp(edge, 1.0 - edge);
+    let below = at((middle - 0.5 * step).max(0.5 * edge));
+    let above = at((middle + 0.5 * step).min(1.0 - 0.5 * edge));
+    (at(middle), 0.6 * (above - below))
+}
+
+const PRIMES: [u64; 20] = [
+    2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71,
+];
+
+/// The digits of `i` in a base, mirrored at the point (Halton 1960).
+fn radical_inverse(mut i: u64, base: u64) -> f64 {
+    let (mut value, mut digit) = (0.0, 1.0 / base as f64);
+    while i > 0 {
+        value += (i % base) as f64 * digit;
+        i /= base;
+        digit /= base as f64;
+    }
+    value
+}
+
+/// The place on the real line of a prior's quantile.
+pub(crate) fn on_line(prior: &AnyPrior, p: f64) -> f64 {
+    let x = prior.quantile(p).unwrap_or(0.0);
+    let support = <AnyPrior as Prior<Plain>>::support(prior);
+    let line = support.to_line(Real::<Plain>::new(x).value());
+    if line.is_finite() { line } else { 0.0 }
+}

@@ -1,0 +1,6 @@
+//! The evidence of a model with mechanisms.
+
+pub(crate) mod apart;
+pub(crate) mod attribute;
+pub(crate) mod fit;
+pub(crate) mod ridges;

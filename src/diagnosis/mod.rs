@@ -1,0 +1,32 @@
+//! Missing physics: where simulation and recording differ, and what was left
+//! out.
+
+mod compare;
+mod decide;
+mod diagnose;
+mod evidence;
+mod findings;
+#[cfg(test)]
+mod fixture;
+mod locate;
+mod options;
+mod tell;
+#[cfg(test)]
+mod tests;
+mod together;
+
+pub use decide::judge::Odds;
+pub use diagnose::{diagnose, diagnose_together};
+pub use evidence::attribute::{Attribution, attribute, pair};
+pub use evidence::fit::{Fit, fit};
+pub use findings::{
+    Baseline, Corrected, Diagnosis, Improvement, Judged, Mismatch, Pair,
+    Pictured, Rival, Told, Verdict,
+};
+pub use locate::{CELLS, FreeForce, locate};
+pub use options::Options;
+pub use tell::page::page;
+pub use tell::pictures::pictures;
+pub use tell::summary::summary;
+pub use tell::words::in_words;
+pub use together::{Sharing, Together};

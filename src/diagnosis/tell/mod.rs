@@ -1,0 +1,10 @@
+//! A diagnosis as words, tables, pictures, a page, and a model to paste.
+
+pub(crate) mod page;
+pub(crate) mod paste;
+pub(crate) mod phrases;
+pub(crate) mod pictures;
+pub(crate) mod place;
+mod signs;
+pub(crate) mod summary;
+pub(crate) mod words;

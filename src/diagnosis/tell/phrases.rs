@@ -1,0 +1,166 @@
+//! Mechanisms, places and figures in words.
+
+use crate::diagnosis::{Baseline, Diagnosis, Judged, Mismatch, Told};
+use crate::physics::forces::Axis;
+use crate::report::digits::{beside, short, significant};
+use crate::report::text::{is_synthetic, plain, unit};
+
+/// A mechanism as a snow scientist would call it.
+pub(crate) fn called(m: &Judged) -> String {
+    plain(&m.noun.words)
+}
+
+/// The mechanism of that name, where it was weighed.
+pub(crate) fn judged<'a>(d: &'a Diagnosis, name: &str) -> Option<&'a Judged> {
+    d.mechanisms.iter().find(|m| m.name == name)
+}
+
+/// What the names stand for, joined: “a patch of higher friction together
+/// with a clock that is off”.
+pub(crate) fn all_called(
+    d: &Diagnosis,
+    names: &[String],
+    last: &str,
+) -> String {
+    let word = |name: &String| {
+        judged(d, name).map_or_else(|| format!("“{}”", plain(name)), called)
+    };
+    joined(&names.iter().map(word).collect::<Vec<_>>(), last)
+}
+
+/// `a, b and c`, with another word for `and`.
+pub(crate) fn joined(parts: &[String], last: &str) -> String {
+    match parts {
+        [init @ .., end] if !init.is_empty() => {
+            format!("{} {last} {end}", init.join(", "))
+        }
+        _ => parts.concat(),
+    }
+}
+
+/// With a capital letter.
+pub(crate) fn capital(words: &str) -> String {
+    let mut chars = words.chars();
+    let first = chars.next().map(|c| c.to_uppercase().to_string());
+    first.unwrap_or_default() + chars.as_str()
+}
+
+/// The friction of a model, before “gives”.
+pub(crate) fn friction(b: &Baseline) -> String {
+    let law = match b.friction.trim() {
+        "" | "none" => "gravity alone".to_owned(),
+        law => format!("{} friction", capital(&plain(law))),
+    };
+    b.mechanisms.iter().fold(law, |law, had| law + " plus " + &plain(had))
+}
+
+/// The model as it was: “Voellmy friction with iid errors”.
+pub(crate) fn model(b: &Baseline) -> String {
+    match b.noise.trim() {
+        "" => friction(b),
+        noise => format!("{} with {} errors", friction(b), plain(noise)),
+    }
+}
+
+/// The event's name in quotes, and whether nature made it.
+pub(crate) fn event(d: &Diagnosis) -> String {
+    let origin = if is_synthetic(&d.event) { " (synthetic data)" } else { "" };
+    match d.event.trim() {
+        "" => format!("the recording{origin}"),
+        name => format!("“{}”{origin}", plain(name)),
+    }
+}
+
+/// A figure with its unit.
+pub(crate) fn with_unit(number: &str, of: &str) -> String {
+    match unit(of).as_str() {
+        "" => number.to_owned(),
+        unit => format!("{number} {unit}"),
+    }
+}
+
+/// A probability: never 1 and never 0, since no evidence is that strong.
+pub(crate) fn probability(p: f64) -> String {
+    match p {
+        p if p > 0.999 => "> 0.999".to_owned(),
+        p if p > 0.99 => format!("{p:.3}"),
+        p if p >= 0.01 => format!("{p:.2}"),
+        p if p >= 0.001 => format!("{p:.3}"),
+        p if p >= 0.0 => "< 0.001".to_owned(),
+        _ => significant(p, 2),
+    }
+}
+
+/// log10 of a Bayes factor, with the sign that tells for or against.
+pub(crate) fn log10(x: f64) -> String {
+    match x {
+        x if !x.is_finite() => significant(x, 2),
+        x if x.abs() < 0.05 => "0.0".to_owned(),
+        x => format!("{x:+.1}"),
+    }
+}
+
+/// A parameter's median with its 90 % interval.
+pub(crate) fn interval(p: &Told) -> String {
+    format!("{} to {}", beside(p.q05, p.sd), beside(p.q95, p.sd))
+}
+
+/// The parameter's own name, without that of its mechanism.
+pub(crate) fn own_name<'a>(p: &'a Told, mechanism: &str) -> &'a str {
+    let rest = p.name.strip_prefix(mechanism);
+    rest.and_then(|rest| rest.strip_prefix('.')).unwrap_or(&p.name)
+}
+
+/// A selected mechanism's parameters: those of the corrected model where it
+/// has them, else those that the mechanism had alone.
+pub(crate) fn amounts<'a>(d: &'a Diagnosis, name: &str) -> Vec<&'a Told> {
+    let joint: Vec<&Told> = d
+        .parameters
+        .iter()
+        .filter(|p| own_name(p, name).len() < p.name.len())
+        .collect();
+    match judged(d, name) {
+        Some(alone) if joint.is_empty() => alone.parameters.iter().collect(),
+        _ => joint,
+    }
+}
+
+/// The unit of an axis.
+pub(crate) fn axis_unit(axis: Axis) -> &'static str {
+    match axis {
+        Axis::Place => "m",
+        Axis::Time => "s",
+        Axis::Speed => "m/s",
+    }
+}
+
+/// `132 to 187 m`, digits as the length of the stretch allows.
+pub(crate) fn range(from: f64, to: f64, unit: &str) -> String {
+    let fine = (to - from).abs() < 10.0;
+    let one = |x: f64| match x {
+        x if !x.is_finite() => "n/a".to_owned(),
+        x if fine => short((10.0 * x).round() / 10.0, 4),
+        x => format!("{:.0}", x + 0.0),
+    };
+    format!("{} to {} {unit}", one(from), one(to))
+}
+
+/// `from 132 to 187 m (8.1 to 10.6 s)`.
+pub(crate) fn stretch(m: &Mismatch) -> String {
+    let unit = axis_unit(m.axis);
+    let main = range(m.from, m.to, unit);
+    let known = |a: f64, b: f64| a.is_finite() && b.is_finite();
+    let mut beside = Vec::new();
+    if m.axis != Axis::Place && known(m.place_from, m.place_to) {
+        beside.push(range(m.place_from, m.place_to, "m"));
+    }
+    if m.axis != Axis::Time && known(m.time_from, m.time_to) {
+        beside.push(range(m.time_from, m.time_to, "s"));
+    }
+    let beside = match beside.join(", ") {
+        none if none.is_empty() => none,
+        some => format!(" ({some})"),
+    };
+    let at = if m.axis == Axis::Speed { "at speeds from" } else { "from" };
+    format!("{at} {main}{beside}")
+}

@@ -1,0 +1,122 @@
+//! Mechanisms as bars of probability, with their Bayes factors.
+
+use super::Figure;
+use crate::diagnosis::tell::phrases::{log10, probability};
+use crate::diagnosis::{Diagnosis, Judged};
+use crate::report::svg::axes::{Axes, Key, Labels, Scale, legend};
+use crate::report::svg::canvas::{Anchor, Canvas, FONT, Frame, WIDTH};
+use crate::report::svg::palette::{FAINT, GREY, INK, Pen};
+use crate::report::text::shorten;
+
+/// How many mechanisms have a bar.
+const SHOWN: usize = 12;
+const ROW: f64 = 25.0;
+/// Where names end, bars begin and end, and the two columns end.
+const NAMES: f64 = 156.0;
+const BARS: (f64, f64) = (166.0, 448.0);
+const COLUMNS: (f64, f64) = (534.0, WIDTH - 14.0);
+
+/// The mechanisms, most probable first; nothing where none was weighed.
+pub(crate) fn bars(d: &Diagnosis) -> Option<Figure> {
+    let shown = &d.mechanisms[..d.mechanisms.len().min(SHOWN)];
+    if shown.is_empty() {
+        return None;
+    }
+    let head = 2.0 * FONT + 46.0;
+    let height = head + ROW * shown.len() as f64 + 52.0;
+    let mut canvas = Canvas::new("mechanisms", height);
+    legend(&mut canvas, 12.0, 2.0, &entries(shown));
+    let bottom = height - 52.0;
+    let frame = Frame { left: BARS.0, right: BARS.1, top: head, bottom };
+    let axes = Axes {
+        frame,
+        x: Scale { low: 0.0, high: 1.0 },
+        y: Scale { low: 0.0, high: 1.0 },
+    };
+    grid(&mut canvas, &axes);
+    axes.draw(&mut canvas, Labels { x: Some("probability"), y: None });
+    for (text, x) in [("probability", COLUMNS.0), ("log10 BF", COLUMNS.1)] {
+        canvas.text((x, head - 8.0), Anchor::End, GREY, text);
+    }
+    for (i, m) in shown.iter().enumerate() {
+        row(&mut canvas, &axes, d, m, head + ROW * i as f64);
+    }
+    Some(Figure {
+        id: "mechanisms".to_owned(),
+        caption: caption(d),
+        svg: canvas.finish("The probability of each mechanism"),
+    })
+}
+
+fn grid(canvas: &mut Canvas, axes: &Axes) {
+    for p in [0.0, 0.2, 0.4, 0.6, 0.8, 1.0] {
+        let ends = (axes.at(p, 0.0), axes.at(p, 1.0));
+        canvas.line(ends.0, ends.1, Pen::new(FAINT, 1.0));
+    }
+}
+
+fn row(canvas: &mut Canvas, axes: &Axes, d: &Diagnosis, m: &Judged, top: f64) {
+    let base = top + 0.5 * ROW + 4.5;
+    let name = shorten(&m.name, 20);
+    if d.selected.contains(&m.name) {
+        canvas.bold((NAMES, base), Anchor::End, &name);
+    } else {
+        canvas.text((NAMES, base), Anchor::End, INK, &name);
+    }
+    let p = if m.probability.is_finite() { m.probability } else { 0.0 };
+    let left = axes.frame.left;
+    // No bar is quite invisible.
+    let right = axes.at(p.clamp(0.0, 1.0), 0.0).0.max(left + 1.5);
+    let (top, bottom) = (top + 4.0, top + ROW - 4.0);
+    let bar = Frame { left, top, right, bottom };
+    canvas.rectangle(bar, colour(m.kind), 1.0);
+    let text = probability(m.probability);
+    canvas.text((COLUMNS.0, base), Anchor::End, INK, &text);
+    let text = match m.kind {
+        "none" => "0".to_owned(),
+        _ => log10(m.log10_bayes_factor).replace('-', "−"),
+    };
+    canvas.text((COLUMNS.1, base), Anchor::End, INK, &text);
+}
+
+/// A colour for each kind, told apart by the colour-blind.
+fn colour(kind: &str) -> &'static str {
+    KINDS.iter().find(|k| k.0 == kind).map_or("#8c8c8c", |k| k.2)
+}
+
+const KINDS: [(&str, &str, &str); 6] = [
+    ("physics", "force", "#0072b2"),
+    ("start", "start", "#009e73"),
+    ("measurement", "measurement", "#e69f00"),
+    ("noise", "errors", "#cc79a7"),
+    ("unknown", "force of free form", "#56b4e9"),
+    ("none", "nothing missing", "#8c8c8c"),
+];
+
+fn entries(shown: &[Judged]) -> Vec<(Key, &'static str)> {
+    KINDS
+        .iter()
+        .filter(|kind| shown.iter().any(|m| m.kind == kind.0))
+        .map(|kind| (Key::Fill(kind.2), kind.1))
+        .collect()
+}
+
+fn caption(d: &Diagnosis) -> String {
+    let mut out = "Half of the prior probability is on nothing missing, the \
+         other half shared evenly. log10 BF: the Bayes factor against the \
+         model as it was; above 2 is called decisive."
+        .to_owned();
+    if !d.selected.is_empty() {
+        out += " Bold: what the corrected model has.";
+    }
+    let rest = d.mechanisms.get(SHOWN..).unwrap_or_default();
+    if !rest.is_empty() {
+        let p: f64 = rest.iter().map(|m| m.probability).sum();
+        out += &format!(
+            " {} more are not drawn, of probability {} together.",
+            rest.len(),
+            probability(p)
+        );
+    }
+    out
+}

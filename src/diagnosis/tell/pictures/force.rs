@@ -1,0 +1,173 @@
+//! The free-form force with its simultaneous band: over distance large, over
+//! time and over speed small.
+
+use std::f64::consts::LN_10;
+
+use super::{Figure, along, shade};
+use crate::diagnosis::tell::phrases::log10;
+use crate::diagnosis::{Diagnosis, FreeForce};
+use crate::physics::forces::Axis;
+use crate::report::svg::axes::{Axes, Key, Labels, Scale, legend};
+use crate::report::svg::canvas::{Anchor, Canvas, FONT, Frame, Point, WIDTH};
+use crate::report::svg::palette::{FULL, GREY, INK, MASS, POSTERIOR, Pen};
+
+const LARGE: f64 = 230.0;
+const SMALL: f64 = 130.0;
+/// What the labels above and below a panel take.
+const ROOM: f64 = 78.0;
+const GAP: f64 = 26.0;
+
+const MEAN: Pen = Pen::new(POSTERIOR, 2.0);
+const SURE: Pen = Pen::new(MASS, 3.6);
+const ZERO: Pen = Pen::new(INK, 1.3);
+
+/// The forces that were inferred, where there are any.
+pub(crate) fn forces(d: &Diagnosis) -> Option<Figure> {
+    let large = main(&d.forces)?;
+    let small: Vec<&FreeForce> =
+        d.forces.iter().filter(|f| f.axis != large.axis).collect();
+    let below = if small.is_empty() { 0.0 } else { SMALL + ROOM };
+    let head = 2.0 * FONT + 14.0;
+    let mut canvas = Canvas::new("force", head + LARGE + ROOM + below);
+    legend(&mut canvas, 12.0, 2.0, &entries(d));
+    let stretches = |f: &FreeForce| along(&d.mismatch, f.axis);
+    let y = scale(large);
+    let (left, top) = (Axes::margin(y, LARGE), head + 22.0);
+    let (right, bottom) = (WIDTH - 14.0, top + LARGE);
+    let frame = Frame { left, top, right, bottom };
+    panel(&mut canvas, frame, large, &stretches(large));
+    let width = (WIDTH - 12.0) / small.len().max(1) as f64;
+    for (i, force) in small.into_iter().enumerate() {
+        let margin = Axes::margin(scale(force), SMALL);
+        let start = 4.0 + width * i as f64;
+        let top = bottom + ROOM;
+        let (left, right) = (start + margin, start + width - GAP);
+        let frame = Frame { left, top, right, bottom: top + SMALL };
+        panel(&mut canvas, frame, force, &stretches(force));
+    }
+    Some(Figure {
+        id: "force".to_owned(),
+        caption: caption(d),
+        svg: canvas.finish("The free-form force with its band"),
+    })
+}
+
+/// The force over distance, or the first there is.
+fn main(forces: &[FreeForce]) -> Option<&FreeForce> {
+    let drawable = |f: &&FreeForce| f.at.len() > 1;
+    let mut all = forces.iter().filter(drawable);
+    all.clone().find(|f| f.axis == Axis::Place).or_else(|| all.next())
+}
+
+fn entries(d: &Diagnosis) -> Vec<(Key, &'static str)> {
+    let mut out = vec![
+        (Key::Line(MEAN), "mean"),
+        (Key::Fill(FULL), "90 % band of the whole curve"),
+        (Key::Line(SURE), "the band leaves zero out"),
+    ];
+    if !d.mismatch.is_empty() {
+        out.push((Key::Fill("#f9e8dc"), "located stretch"));
+    }
+    out
+}
+
+fn bounds(f: &FreeForce) -> (Vec<f64>, Vec<f64>) {
+    let ends = f.mean.iter().zip(&f.sd);
+    ends.map(|(m, s)| (m - f.width * s, m + f.width * s)).unzip()
+}
+
+fn scale(f: &FreeForce) -> Scale {
+    let (low, high) = bounds(f);
+    Scale::of(low.into_iter().chain(high).chain([0.0])).padded(0.08)
+}
+
+fn panel(
+    canvas: &mut Canvas,
+    frame: Frame,
+    f: &FreeForce,
+    stretches: &[(f64, f64)],
+) {
+    let half = 0.5 * f.at.windows(2).next().map_or(0.0, |w| w[1] - w[0]);
+    let ends = f.at.first().map(|x| x - half).into_iter();
+    let x = Scale::of(ends.chain(f.at.last().map(|x| x + half)));
+    let axes = Axes { frame, x, y: scale(f) };
+    shade(canvas, &axes, stretches);
+    let (over, name) = names(f.axis);
+    axes.draw(canvas, Labels { x: Some(name), y: Some("force [m/s²]") });
+    let (low, high) = bounds(f);
+    canvas.clip(frame);
+    let of = |y: &[f64]| axes.points(&f.at, y);
+    canvas.area(&of(&low), &of(&high), FULL, 0.85);
+    canvas.curve(&of(&f.mean), MEAN);
+    canvas.curve(&sure(&axes, f), SURE);
+    canvas.line(axes.at(x.low, 0.0), axes.at(x.high, 0.0), ZERO);
+    canvas.unclip();
+    let (left, above) = (frame.left, frame.top - 8.0);
+    canvas.heading((left, above), over);
+    let factor = log10(f.log_bayes_factor / LN_10).replace('-', "−");
+    // A small panel has no room for more.
+    let small = frame.width() < 0.5 * WIDTH;
+    let what = if small { "log10 BF" } else { "log10 Bayes factor" };
+    let text = format!("{what} {factor}");
+    canvas.text((frame.right, above), Anchor::End, GREY, &text);
+    senses(canvas, &axes);
+}
+
+fn names(axis: Axis) -> (&'static str, &'static str) {
+    match axis {
+        Axis::Place => ("over distance", "distance along the slope [m]"),
+        Axis::Time => ("over time", "time [s]"),
+        Axis::Speed => ("over speed", "speed [m/s]"),
+    }
+}
+
+/// The mean where the band leaves zero out; broken elsewhere.
+fn sure(axes: &Axes, f: &FreeForce) -> Vec<Point> {
+    let half = 0.5 * f.at.windows(2).next().map_or(0.0, |w| w[1] - w[0]);
+    let mut points = Vec::new();
+    for ((x, m), s) in f.at.iter().zip(&f.mean).zip(&f.sd) {
+        if m.abs() > f.width * s {
+            // A cell alone is still a line.
+            points.push(axes.at(x - 0.2 * half, *m));
+            points.push(axes.at(x + 0.2 * half, *m));
+        } else {
+            points.push((f64::NAN, f64::NAN));
+        }
+    }
+    points
+}
+
+/// Which way the force acts, where there is room to say it.
+fn senses(canvas: &mut Canvas, axes: &Axes) {
+    let zero = axes.at(0.0, 0.0).1;
+    let Frame { left, top, bottom, .. } = axes.frame;
+    let room = 2.0 * FONT;
+    if zero - top > room {
+        let at = (left + 6.0, top + FONT + 2.0);
+        canvas.text(at, Anchor::Start, GREY, "drives");
+    }
+    if bottom - zero > room {
+        let at = (left + 6.0, bottom - 6.0);
+        canvas.text(at, Anchor::Start, GREY, "brakes");
+    }
+}
+
+fn caption(d: &Diagnosis) -> String {
+    let mut out = "A force of any shape, inferred together with the model's \
+         own parameters: above zero it drives the mass, below it brakes. \
+         Nine of ten such forces lie in the band along their whole length."
+        .to_owned();
+    let best = d
+        .forces
+        .iter()
+        .filter(|f| f.log_bayes_factor.is_finite())
+        .max_by(|a, b| a.log_bayes_factor.total_cmp(&b.log_bayes_factor));
+    if let Some(best) = best.filter(|_| d.forces.len() > 1) {
+        let over = names(best.axis).0;
+        out += &format!(
+            " The evidence is greatest for a force {over}; Bayes factors \
+             (BF) are against the model without one."
+        );
+    }
+    out
+}

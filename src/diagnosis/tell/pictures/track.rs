@@ -1,0 +1,115 @@
+//! The track with the located stretch on it.
+
+use super::Figure;
+use crate::diagnosis::tell::phrases::range;
+use crate::diagnosis::{Diagnosis, Pictured};
+use crate::report::digits::short;
+use crate::report::svg::axes::{Axes, Key, Labels, Scale, legend};
+use crate::report::svg::canvas::{
+    Anchor, Canvas, Frame, Point, WIDTH, text_width,
+};
+use crate::report::svg::palette::{GREY, MASS, Pen};
+use crate::report::text::thinned;
+
+/// How many points are drawn.
+const POINTS: usize = 1500;
+/// The least and the greatest height of the panel.
+const HEIGHTS: (f64, f64) = (150.0, 380.0);
+
+const SURVEY: Pen = Pen::new(GREY, 2.0);
+const MARK: Pen = Pen::new(MASS, 6.0);
+
+/// The track of a recording, where it has at least two points.
+pub(crate) fn track(d: &Diagnosis, p: &Pictured, id: &str) -> Option<Figure> {
+    let (x, z) = (&p.track.0, &p.track.1);
+    if x.len().min(z.len()) < 2 {
+        return None;
+    }
+    let up = Scale::of(z.iter().copied()).padded(0.10);
+    let left = Axes::margin(up, 250.0);
+    let right = WIDTH - 22.0;
+    let (across, height) = fitted(x, up, right - left);
+    let mut canvas = Canvas::new(id, height + 84.0);
+    let top = legend(&mut canvas, left, 2.0, &entries(p)).max(26.0);
+    let frame = Frame { left, right, top, bottom: top + height };
+    let axes = Axes { frame, x: across, y: up };
+    let labels = Labels {
+        x: Some("horizontal distance [m]"),
+        y: Some("elevation [m]"),
+    };
+    axes.draw(&mut canvas, labels);
+    let kept = thinned(x.len().min(z.len()), POINTS);
+    let line: Vec<Point> = kept.iter().map(|&i| axes.at(x[i], z[i])).collect();
+    canvas.curve(&line, SURVEY);
+    mark(&mut canvas, &axes, d, p);
+    let stretched = (height / up.span()) / ((right - left) / across.span());
+    Some(Figure {
+        id: id.to_owned(),
+        caption: caption(p, stretched),
+        svg: canvas.finish("The track with the located stretch on it"),
+    })
+}
+
+/// The scale across and the height of the panel: true to scale where the
+/// track is neither flat nor upright.
+fn fitted(x: &[f64], up: Scale, width: f64) -> (Scale, f64) {
+    let across = Scale::of(x.iter().copied()).padded(0.02);
+    let height = width * up.span() / across.span();
+    if height <= HEIGHTS.1 {
+        return (across, height.max(HEIGHTS.0));
+    }
+    // An upright track stays upright, in a wider field.
+    let wider = width * up.span() / HEIGHTS.1;
+    let share = 0.5 * (wider / across.span() - 1.0);
+    (across.padded(share), HEIGHTS.1)
+}
+
+fn entries(p: &Pictured) -> Vec<(Key, &'static str)> {
+    let mut out = vec![(Key::Line(SURVEY), "track")];
+    if !p.marked.is_empty() {
+        let words = "where simulation and recording differ";
+        out.push((Key::Line(MARK), words));
+    }
+    out
+}
+
+fn mark(canvas: &mut Canvas, axes: &Axes, d: &Diagnosis, p: &Pictured) {
+    let kept = thinned(p.marked.len(), POINTS);
+    let line: Vec<Point> =
+        kept.iter().map(|&i| axes.at(p.marked[i].0, p.marked[i].1)).collect();
+    canvas.curve(&line, MARK);
+    let Some(m) = d.mismatch.first() else { return };
+    let whole = line.iter().filter(|p| p.0.is_finite() && p.1.is_finite());
+    let points: Vec<&Point> = whole.collect();
+    let Some(&&(x, y)) = points.get(points.len() / 2) else { return };
+    let text = range(m.place_from, m.place_to, "m");
+    // Above the line, on the side to which it falls.
+    let rises = points[0].1 > points[points.len() - 1].1 + 1.0;
+    let room = text_width(&text) + 12.0;
+    let fits = x - room > axes.frame.left;
+    let (x, anchor) = match rises && fits {
+        true => (x - 10.0, Anchor::End),
+        false => (x.min(WIDTH - room) + 10.0, Anchor::Start),
+    };
+    let y = (y - 12.0).max(axes.frame.top + 12.0);
+    canvas.text((x, y), anchor, MASS, &text);
+}
+
+fn caption(p: &Pictured, stretched: f64) -> String {
+    let mut out = if p.marked.is_empty() {
+        "The track."
+    } else {
+        "Distances of the marked stretch are along the slope, on the axis \
+         that events share."
+    }
+    .to_owned();
+    if stretched.is_finite() && (stretched - 1.0).abs() > 0.05 {
+        let times = short(stretched, 2);
+        out += &format!(
+            " Heights are drawn {times} times as large as distances."
+        );
+    } else {
+        out += " Heights and distances have the same scale.";
+    }
+    out
+}

@@ -1,0 +1,25 @@
+//! The backends, one a file.
+
+mod bridge;
+mod importance;
+pub(in crate::infer) mod laplace_mixture;
+mod legendre;
+mod map;
+mod memory;
+mod mh;
+#[cfg(feature = "nuts")]
+mod nuts;
+mod quadrature;
+mod reciprocal;
+mod smc;
+
+pub use bridge::Bridge;
+pub use importance::ImportanceSampling;
+pub use laplace_mixture::{LaplaceMixture, Ridge};
+pub use map::{Map, Mode};
+pub use mh::{MetropolisHastings, Proposal};
+#[cfg(feature = "nuts")]
+pub use nuts::Nuts;
+pub use quadrature::{LEVELS, Marginal, Quadrature};
+pub use reciprocal::ReciprocalImportance;
+pub use smc::Smc;

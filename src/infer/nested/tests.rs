@@ -1,0 +1,110 @@
+//! Three groups with something in common, against the whole and against
+//! quadrature.
+
+use super::*;
+use crate::error::Outcome;
+use crate::infer::Quiet;
+use crate::model::{Density, Information, Label, Model, Number, Program, Run};
+use crate::prior::{AnyPrior, Normal};
+use crate::scalar::Real;
+
+/// a ~ N(0, 1); for each of some events b ~ Exponential of mean 2, and 0.5 was
+/// seen of N(a b, 1).
+struct Events(&'static [usize]);
+
+impl Program for Events {
+    fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
+        let a = AnyPrior::Normal(0.0, 1.0);
+        let a = run.scalar(Label::new("a", "1"), a)?;
+        for &event in self.0 {
+            let b = AnyPrior::Exponential(2.0);
+            let b = run.scalar(Label::new("b", "1").at(event), b)?;
+            run.observe_each(&0.5, Normal::new(a * b, Real::new(1.0)))?;
+        }
+        Ok(())
+    }
+}
+
+const PROGRAMS: [Events; 5] = [
+    Events(&[0, 1, 2]),
+    Events(&[]),
+    Events(&[0]),
+    Events(&[1]),
+    Events(&[2]),
+];
+
+/// Gives a test the three events and what they have in common.
+fn with_events(test: impl FnOnce(&Grouped<'_>, &Group<'_>)) {
+    let all = PROGRAMS.each_ref().map(|p| Posterior::new(p).unwrap());
+    let [whole, common, groups @ ..] = &all;
+    let common = Group { posterior: common, places: vec![0] };
+    let groups = groups
+        .iter()
+        .enumerate()
+        .map(|(i, posterior)| Group { posterior, places: vec![0, 1 + i] })
+        .collect();
+    test(&Grouped { whole, common: None, groups }, &common);
+}
+
+#[test]
+fn groups_add_up_to_the_whole() {
+    with_events(|grouped, common| {
+        let z = [0.7, -0.3, 0.4, 1.1];
+        let known = grouped.whole.information(&z).unwrap();
+        let found = Assembly::new(grouped, common).information(&z).unwrap();
+        // Round-off, and that of differences of the priors.
+        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-6, "{a} {b}");
+        let parts = |of: &Information| {
+            let Density { log_prior, log_jacobian, log_likelihood, .. } =
+                of.density;
+            let numbers = [log_prior, log_jacobian, log_likelihood];
+            let derivatives = of.gradient.iter().chain(of.precision.iter());
+            numbers.into_iter().chain(derivatives.copied().collect::<Vec<_>>())
+        };
+        assert_eq!(found.density.rejected, None);
+        parts(&known).zip(parts(&found)).for_each(|(a, b)| near(a, b));
+    });
+}
+
+/// By midpoints, to 1e-5: both integrands are smooth and gone at the ends.
+fn log_evidence() -> f64 {
+    let sum = |from: f64, to: f64, count: i32, f: &dyn Fn(f64) -> f64| {
+        let step = (to - from) / f64::from(count);
+        let at = |i| from + (f64::from(i) + 0.5) * step;
+        (0..count).map(|i| f(at(i))).sum::<f64>() * step
+    };
+    let normal = |x: f64| (-0.5 * x * x).exp() / std::f64::consts::TAU.sqrt();
+    let one = |a: f64| {
+        let density = |b: f64| 0.5 * (-0.5 * b).exp() * normal(0.5 - a * b);
+        sum(0.0, 60.0, 4000, &density)
+    };
+    sum(-8.0, 8.0, 400, &|a| normal(a) * one(a).powi(3)).ln()
+}
+
+#[test]
+fn one_within_the_other_is_as_all_at_once() {
+    let known = log_evidence();
+    let peaks = LaplaceMixture::default();
+    with_events(|grouped, common| {
+        let seed = Seed::new(1);
+        let assembly = Assembly::new(grouped, common);
+        let whole = Posterior::new(&assembly).unwrap();
+        let parts = peaks.parts(&whole, seed.child(0)).unwrap();
+        let nested =
+            peaks.nested(grouped, common, &parts, seed.child(1), &Quiet);
+        let either = peaks.within_common(grouped, common, seed, &Quiet);
+        let [nested, either] = [nested, either].map(|found| {
+            let found = found.unwrap();
+            assert_eq!(found.warnings, Vec::<String>::new());
+            found.evidence.unwrap()
+        });
+        assert_eq!(nested.method, NESTED);
+        assert_ne!(either.method, NESTED);
+        for found in [nested, either] {
+            let off = (found.log - known).abs();
+            // Four standard errors of the estimate.
+            let what = format!("{found:?}, {known}");
+            assert!(off < 4.0 * found.se && found.se < 0.05, "{what}");
+        }
+    });
+}

@@ -1,0 +1,285 @@
+//! A mixture of multivariate Student-t distributions, fitted to draws.
+//!
+//! The proposal of importance sampling and the second start of sequential
+//! Monte Carlo: heavier in the tails than what it is fitted to, and with a
+//! share of the prior's own draws so that no place is out of reach.
+
+mod fit;
+mod mend;
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use rand::RngExt;
+use rand_distr::{ChiSquared, Distribution, StandardNormal};
+use statrs::function::gamma::ln_gamma;
+
+use crate::infer::log_sum_exp;
+use crate::seed::Rng;
+
+/// Degrees of freedom of each component: heavy enough to bound the weights
+/// of a posterior whose tails are those of its prior.
+const FREEDOM: f64 = 5.0;
+
+/// How much wider than the draws each component is made, in variance.
+const INFLATION: f64 = 1.3;
+
+/// ln of the density of a multivariate Student-t distribution of unit shape at
+/// its middle.
+pub(crate) fn student_constant(freedom: f64, dimension: f64) -> f64 {
+    ln_gamma(0.5 * (freedom + dimension))
+        - ln_gamma(0.5 * freedom)
+        - 0.5 * dimension * (freedom * std::f64::consts::PI).ln()
+}
+
+/// A mixture of Student-t components on the real line.
+#[derive(Debug, Clone)]
+pub struct Mixture {
+    components: Vec<Component>,
+}
+
+#[derive(Debug, Clone)]
+struct Component {
+    weight: f64,
+    mean: DVector<f64>,
+    shape: Cholesky<f64, Dyn>,
+    /// The rows of the shape's inverse factor, one after the other, each with
+    /// what it makes of the mean: densities are most of what importance
+    /// sampling costs.
+    whitening: Vec<f64>,
+    log_constant: f64,
+    constant: f64,
+}
+
+impl Component {
+    fn new(
+        weight: f64,
+        mean: DVector<f64>,
+        covariance: &DMatrix<f64>,
+    ) -> Option<Self> {
+        let n = mean.len();
+        let dimension = n as f64;
+        let shape = Cholesky::new(nudged(covariance))?;
+        let log_det = 2.0 * shape.l().diagonal().map(f64::ln).sum();
+        let log_constant =
+            student_constant(FREEDOM, dimension) - 0.5 * log_det;
+        let inverse =
+            shape.l().solve_lower_triangular(&DMatrix::identity(n, n))?;
+        let white = &inverse * &mean;
+        let whitening = (0..n)
+            .flat_map(|i| {
+                let row = (0..=i).map(|j| inverse[(i, j)]);
+                row.chain([white[i]]).collect::<Vec<_>>()
+            })
+            .collect();
+        let constant = log_constant.exp();
+        Some(Self { weight, mean, shape, whitening, log_constant, constant })
+    }
+
+    /// The squared distance from the mean, in units of the shape.
+    fn distance(&self, z: &[f64]) -> f64 {
+        let (mut sum, mut rest) = (0.0, &self.whitening[..]);
+        for i in 1..=z.len() {
+            let (row, after) = rest.split_at(i);
+            let white: f64 = row.iter().zip(z).map(|(r, z)| r * z).sum();
+            let (mean, after) = (after[0], &after[1..]);
+            sum += (white - mean) * (white - mean);
+            rest = after;
+        }
+        sum
+    }
+
+    /// The weighted density at such a squared distance:
+    /// (1 + d/nu)^(-(nu + n)/2), by whole powers and a root.
+    fn density_at(&self, distance: f64) -> f64 {
+        let power = FREEDOM as i32 + self.mean.len() as i32;
+        let falling = 1.0 / (1.0 + distance / FREEDOM);
+        let odd = if power % 2 == 1 { falling.sqrt() } else { 1.0 };
+        self.weight * self.constant * falling.powi(power / 2) * odd
+    }
+
+    /// Its log, also where the density is beyond what a number can hold.
+    fn log_density_at(&self, distance: f64) -> f64 {
+        let n = self.mean.len() as f64;
+        self.weight.ln() + self.log_constant
+            - 0.5 * (FREEDOM + n) * (distance / FREEDOM).ln_1p()
+    }
+}
+
+/// How components share a place.
+#[derive(Debug, Default)]
+struct Shares {
+    /// The squared distance of each.
+    distances: Vec<f64>,
+    /// The share of each in the density.
+    of: Vec<f64>,
+}
+
+impl Shares {
+    /// Those at a place, with the log density there.
+    fn at(&mut self, components: &[Component], z: &[f64]) -> f64 {
+        let Self { distances, of } = self;
+        distances.clear();
+        distances.extend(components.iter().map(|c| c.distance(z)));
+        let each = || components.iter().zip(distances.iter());
+        of.clear();
+        of.extend(each().map(|(c, d)| c.density_at(*d)));
+        let total: f64 = of.iter().sum();
+        if total > 0.0 && total.is_finite() {
+            of.iter_mut().for_each(|share| *share /= total);
+            return total.ln();
+        }
+        of.clear();
+        of.extend(each().map(|(c, d)| c.log_density_at(*d)));
+        let log = log_sum_exp(of.iter().copied());
+        of.iter_mut().for_each(|share| *share = (*share - log).exp());
+        log
+    }
+}
+
+/// A covariance made surely positive definite.
+fn nudged(covariance: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut c = covariance.clone();
+    let trace = c.trace().max(1e-12) / c.nrows() as f64;
+    for i in 0..c.nrows() {
+        c[(i, i)] = c[(i, i)] * (1.0 + 1e-9) + 1e-9 * trace;
+    }
+    c
+}
+
+impl Mixture {
+    /// The mixture of given parts: weight, mean and covariance of each.
+    /// `None` where there are none.
+    pub(crate) fn of(
+        parts: impl Iterator<Item = (f64, DVector<f64>, DMatrix<f64>)>,
+    ) -> Option<Self> {
+        let mut components: Vec<Component> = parts
+            .filter_map(|(weight, mean, covariance)| {
+                Component::new(weight, mean, &covariance)
+            })
+            .collect();
+        let total: f64 = components.iter().map(|c| c.weight).sum();
+        components.iter_mut().for_each(|c| c.weight /= total);
+        let mixture = (!components.is_empty()).then_some(Self { components });
+        mixture.and_then(|mixture| mixture.inflated())
+    }
+
+    /// The same components, each weighing what weighted draws say it holds:
+    /// one round of expectation and maximisation for the weights alone
+    /// (Douc, Guillin, Marin, Robert 2007).
+    #[must_use]
+    pub(in crate::infer) fn reweighted<'z>(
+        &self,
+        draws: impl Iterator<Item = (&'z [f64], f64)>,
+    ) -> Self {
+        let mut totals = vec![0.0; self.components.len()];
+        let mut shares = Shares::default();
+        for (z, weight) in draws {
+            shares.at(&self.components, z);
+            for (sum, share) in totals.iter_mut().zip(&shares.of) {
+                *sum += weight * share;
+            }
+        }
+        // Half of the old weight stays: a round may have missed a part.
+        let mut components = self.components.clone();
+        for (component, total) in components.iter_mut().zip(totals) {
+            component.weight = 0.5 * (component.weight + total);
+        }
+        Self { components }
+    }
+
+    /// The components of both, either half of the weight.
+    #[must_use]
+    pub(in crate::infer) fn beside(mut self, other: Self) -> Self {
+        self.components.extend(other.components);
+        self.components.iter_mut().for_each(|c| c.weight *= 0.5);
+        self
+    }
+
+    fn inflated(&self) -> Option<Self> {
+        let wide = |c: &Component| {
+            let covariance = c.shape.l() * c.shape.l().transpose() * INFLATION;
+            Component::new(c.weight, c.mean.clone(), &covariance)
+        };
+        let components =
+            self.components.iter().map(wide).collect::<Option<_>>()?;
+        Some(Self { components })
+    }
+
+    /// How many components it has.
+    pub fn components(&self) -> usize {
+        self.components.len()
+    }
+
+    /// The log density at a place on the real line.
+    pub fn log_density(&self, z: &[f64]) -> f64 {
+        let at = |c: &Component| c.density_at(c.distance(z));
+        let total: f64 = self.components.iter().map(at).sum();
+        if total > 0.0 && total.is_finite() {
+            return total.ln();
+        }
+        let at = |c: &Component| c.log_density_at(c.distance(z));
+        log_sum_exp(self.components.iter().map(at))
+    }
+
+    /// One draw, a place on the real line.
+    pub fn draw(&self, rng: &mut Rng) -> Vec<f64> {
+        let mut u: f64 = rng.random();
+        let mut chosen = &self.components[0];
+        for component in &self.components {
+            chosen = component;
+            u -= component.weight;
+            if u < 0.0 {
+                break;
+            }
+        }
+        let n = chosen.mean.len();
+        let normal = DVector::from_fn(n, |_, _| StandardNormal.sample(rng));
+        let shrink = match ChiSquared::new(FREEDOM) {
+            Ok(law) => (FREEDOM / law.sample(rng)).sqrt(),
+            Err(_) => 1.0,
+        };
+        let step = chosen.shape.l() * normal * shrink;
+        (&chosen.mean + step).as_slice().to_vec()
+    }
+}
+
+fn moments(
+    points: &[DVector<f64>],
+    weights: &[f64],
+) -> Option<(DVector<f64>, DMatrix<f64>)> {
+    let n = points.first()?.len();
+    let mut mean = DVector::zeros(n);
+    for (z, w) in points.iter().zip(weights) {
+        mean.axpy(*w, z, 1.0);
+    }
+    let mut covariance = DMatrix::zeros(n, n);
+    for (z, w) in points.iter().zip(weights) {
+        let d = z - &mean;
+        covariance.ger(*w, &d, &d, 1.0);
+    }
+    Some((mean, covariance))
+}
+
+#[cfg(test)]
+mod tests {
+    use statrs::distribution::{Continuous, StudentsT};
+
+    use super::*;
+
+    #[test]
+    fn one_component_is_a_t_distribution_however_far() {
+        let (mean, variance) = (2.0, 0.25);
+        let part = (
+            1.0,
+            DVector::from_element(1, mean),
+            DMatrix::from_element(1, 1, variance),
+        );
+        let mixture = Mixture::of([part].into_iter()).unwrap();
+        let scale = (variance * INFLATION).sqrt();
+        let known = StudentsT::new(mean, scale, FREEDOM).unwrap();
+        // Where a density is below what a number can hold its log is not.
+        for z in [2.0, 2.3, -1.0, 50.0, 1e8, 1e60] {
+            let off = mixture.log_density(&[z]) - known.ln_pdf(z);
+            assert!(off.abs() < 1e-8, "{z}: {off}");
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! The catalogue: what may be missing from a model, one mechanism a file.
+
+mod ar1;
+mod averaging_window;
+mod clock_offset;
+mod cohesion;
+mod curvature;
+mod entrainment;
+mod friction_hardening;
+mod friction_patch;
+mod friction_step;
+mod heavy_tails;
+mod initial_velocity;
+mod release_position;
+mod sensor_drift;
+mod slope_bias;
+mod surge;
+mod turbulent_drag;
+mod unequal_variance;
+mod velocity_scale;
+mod velocity_weakening;
+mod viscous_drag;
+
+pub use ar1::Ar1;
+pub use averaging_window::AveragingWindow;
+pub use clock_offset::ClockOffset;
+pub use cohesion::Cohesion;
+pub use curvature::Curvature;
+pub use entrainment::Entrainment;
+pub use friction_hardening::FrictionHardening;
+pub use friction_patch::FrictionPatch;
+pub use friction_step::FrictionStep;
+pub use heavy_tails::HeavyTails;
+pub use initial_velocity::InitialVelocity;
+pub use release_position::ReleasePosition;
+pub use sensor_drift::SensorDrift;
+pub use slope_bias::SlopeBias;
+pub use surge::Surge;
+pub use turbulent_drag::TurbulentDrag;
+pub use unequal_variance::UnequalVariance;
+pub use velocity_scale::VelocityScale;
+pub use velocity_weakening::VelocityWeakening;
+pub use viscous_drag::ViscousDrag;
+
+use crate::error::{Error, Result};
+use crate::mechanism::Extent;
+use crate::mechanism::{Candidate, Change, Mechanism, Unknown};
+use crate::physics::Rate;
+use crate::physics::forces::{Axis, STEPS, Shape, Stretch, Term};
+use crate::prior::AnyPrior;
+use crate::scalar::{Kind, Real};
+
+/// The prior sd of a force at the upper-quartile speed \[m/s2\].
+const FORCE: f64 = 1.5;
+/// The prior sd of a change of mu.
+const FRICTION: f64 = 0.15;
+/// The prior sd of a start speed \[m/s\].
+const SPEED: f64 = 5.0;
+/// The prior sd of a release's shift \[m\].
+const DISTANCE: f64 = 20.0;
+/// The prior sd of the ground's angle \[degrees\].
+const ANGLE: f64 = 3.0;
+/// The prior sd of what a sensor has drifted by the end \[recorded unit\].
+const DRIFT: f64 = 2.0;
+
+/// Every mechanism that applies to an event of this extent and that a model
+/// with laws, noises and mechanisms of these names has not, variants one after
+/// the other.
+pub fn catalogue(
+    extent: &Extent,
+    blocks: &[String],
+) -> Vec<Box<dyn Mechanism>> {
+    let extent = *extent;
+    let (place, time, speed) = (Axis::Place, Axis::Time, Axis::Speed);
+    let mut all: Vec<Box<dyn Mechanism>> = vec![
+        Box::new(TurbulentDrag { extent }),
+        Box::new(ViscousDrag { extent }),
+        Box::new(Cohesion { extent }),
+        Box::new(Surge { extent }),
+        Box::new(Entrainment { extent }),
+        Box::new(InitialVelocity { extent }),
+        Box::new(ReleasePosition { extent }),
+        Box::new(ClockOffset),
+        Box::new(VelocityScale),
+        Box::new(SensorDrift { extent }),
+        Box::new(Ar1),
+        Box::new(HeavyTails),
+        Box::new(UnequalVariance { extent, axis: time }),
+        Box::new(UnequalVariance { extent, axis: speed }),
+    ];
+    if extent.carried {
+        all.push(Box::new(VelocityWeakening { extent }));
+        all.push(Box::new(FrictionPatch { extent }));
+        for axis in [place, time] {
+            all.push(Box::new(FrictionStep { extent, axis }));
+            for saturates in [false, true] {
+                all.push(Box::new(FrictionHardening {
+                    extent,
+                    axis,
+                    saturates,
+                }));
+            }
+        }
+        all.push(Box::new(SlopeBias));
+    }
+    if extent.bends {
+        all.push(Box::new(Curvature { extent }));
+    }
+    if extent.averages {
+        for begins in [true, false] {
+            all.push(Box::new(AveragingWindow { begins }));
+        }
+    }
+    all.retain(|m| !is_held(m.as_ref(), blocks));
+    all
+}
+
+/// The mechanism that a label means; a name that has several variants means
+/// the first of them.
+///
+/// # Errors
+/// A label of none, or of one that does not apply here; the message lists
+/// those that do.
+pub fn find(
+    label: &str,
+    extent: &Extent,
+    blocks: &[String],
+) -> Result<Box<dyn Mechanism>> {
+    let wanted = without_spaces(label);
+    let is_it = |m: &dyn Mechanism| {
+        wanted == m.name() || wanted == without_spaces(&m.label())
+    };
+    let mut here = catalogue(extent, blocks);
+    if let Some(i) = here.iter().position(|m| is_it(m.as_ref())) {
+        return Ok(here.swap_remove(i));
+    }
+    let labels: Vec<String> = here.iter().map(|m| m.label()).collect();
+    let labels = labels.join(", ");
+    let everything =
+        Extent { carried: true, bends: true, averages: true, ..*extent };
+    let elsewhere = catalogue(&everything, &[]);
+    let known = elsewhere.into_iter().find(|m| is_it(m.as_ref()));
+    let why = match known {
+        None => "is no mechanism",
+        Some(m) if is_held(m.as_ref(), blocks) => {
+            "is a term that the model's laws or noise already have"
+        }
+        Some(_) => "has nothing to act on in this event",
+    };
+    Err(Error::input(format!(
+        "{label:?} {why}; expected one of {labels}: take one of them, or \
+         drop it"
+    )))
+}
+
+fn without_spaces(text: &str) -> String {
+    text.chars().filter(|c| !c.is_whitespace()).collect()
+}
+
+/// Whether a model with blocks of these names has the mechanism already, in
+/// this variant or another.
+pub(crate) fn is_held(mechanism: &dyn Candidate, blocks: &[String]) -> bool {
+    let also = mechanism.contained_in();
+    blocks
+        .iter()
+        .any(|own| own == mechanism.name() || also.contains(&own.as_str()))
+}
+
+/// A name with what tells the variant from the others that share it.
+fn variant(mechanism: &impl Candidate) -> String {
+    let along = mechanism.coordinate().map(Axis::name);
+    let parts: Vec<&str> = along.into_iter().chain(mechanism.form()).collect();
+    format!("{}({})", mechanism.name(), parts.join(", "))
+}
+
+/// The words for an amplitude above zero, below it, or unknown.
+fn or(amplitude: f64, words: [&'static str; 3]) -> &'static str {
+    match amplitude {
+        x if x > 0.0 => words[0],
+        x if x < 0.0 => words[1],
+        _ => words[2],
+    }
+}
+
+fn unknown(name: &str, unit: &'static str, prior: AnyPrior) -> Unknown {
+    Unknown::new(name, unit, prior)
+}
+
+/// Where a stretch of the run begins, uniform, and how long it is: uniform from
+/// the shortest that values can show to what is left of the run.
+fn stretch(
+    names: [&str; 2],
+    unit: &'static str,
+    [begin, end]: [f64; 2],
+    shortest: f64,
+) -> [Unknown; 2] {
+    let from = AnyPrior::Uniform(begin, end);
+    let length = AnyPrior::Uniform(shortest, end - begin);
+    let length = unknown(names[1], unit, length);
+    let until = Some(end);
+    [unknown(names[0], unit, from), Unknown { until, ..length }]
+}
+
+/// An amplitude, where its stretch begins, and how long that is.
+fn along_place(extent: &Extent, amplitude: Unknown) -> Vec<Unknown> {
+    let Extent { begin, run, duration, step, .. } = *extent;
+    let shortest = run * (step / duration).min(0.5);
+    let names = ["from", "length"];
+    let [from, length] = stretch(names, "m", [begin, begin + run], shortest);
+    vec![amplitude, from, length]
+}
+
+/// A rate added along the whole run.
+fn everywhere<K: Kind>(extent: &Extent, rate: Rate<K>) -> Change<K> {
+    of_term(extent, Term::everywhere(rate))
+}
+
+/// A rate added between two places or times.
+fn between<K: Kind>(
+    extent: &Extent,
+    rate: Rate<K>,
+    axis: Axis,
+    edges: [Real<K>; 2],
+) -> Change<K> {
+    let over = Stretch::Between(axis, edges);
+    of_term(extent, Term { over, ..Term::everywhere(rate) })
+}
+
+fn of_term<K: Kind>(extent: &Extent, term: Term<K>) -> Change<K> {
+    let mut change = Change::default();
+    change.forces.terms.push(term);
+    change.forces.step = extent.duration / STEPS;
+    change
+}
