@@ -1,6 +1,6 @@
-//! Climbing to a peak of the posterior with the Fisher information.
+//! Climbing to a peak with the Fisher information.
 //!
-//! Levenberg and Marquardt's method on the real line: each step solves
+//! Levenberg and Marquardt's method: each step solves
 //! (P + lambda diag P) step = gradient, with P about minus the Hessian from
 //! first derivatives. It needs a dozen steps where a quasi-Newton method
 //! needs a hundred, because a recording is nearly a least-squares problem.
@@ -8,7 +8,188 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::error::Result;
-use crate::model::{Information, Point, Posterior};
+use crate::model::Posterior;
+
+/// A log density about a place, to second order.
+#[derive(Debug, Clone)]
+pub(crate) struct Slope {
+    pub(crate) height: f64,
+    pub(crate) gradient: DVector<f64>,
+    /// About minus the Hessian.
+    pub(crate) precision: DMatrix<f64>,
+}
+
+impl Slope {
+    fn is_usable(&self) -> bool {
+        self.height.is_finite()
+            && self.gradient.iter().all(|g| g.is_finite())
+            && self.precision.iter().all(|p| p.is_finite())
+    }
+
+    /// The step that solves (P + lambda diag P) step = gradient without the
+    /// coordinates that are held, no longer than `longest` along any axis;
+    /// `None` where the matrix is not positive definite.
+    pub(crate) fn step(
+        &self,
+        held: &[usize],
+        lambda: f64,
+        longest: f64,
+    ) -> Option<DVector<f64>> {
+        let mut damped = self.precision.clone();
+        let mut pull = self.gradient.clone();
+        for i in 0..pull.len() {
+            damped[(i, i)] += lambda * damped[(i, i)] + 1e-6;
+        }
+        for &i in held {
+            damped.row_mut(i).fill(0.0);
+            damped.column_mut(i).fill(0.0);
+            (damped[(i, i)], pull[i]) = (1.0, 0.0);
+        }
+        let mut step = damped.cholesky()?.solve(&pull);
+        step *= (longest / step.amax()).min(1.0);
+        Some(step)
+    }
+
+    /// The height that a step leads to, to second order.
+    pub(crate) fn after(&self, step: &DVector<f64>) -> f64 {
+        let bend = step.dot(&(&self.precision * step));
+        self.height + self.gradient.dot(step) - 0.5 * bend
+    }
+}
+
+/// What can be climbed.
+pub(crate) trait Landscape {
+    /// What a place is known by besides its coordinates, to begin the next
+    /// look from.
+    type Trace;
+
+    /// The coordinates along which it is not climbed.
+    fn held(&self) -> &[usize];
+
+    /// The slope at a place that was come to by a step; `None` where there is
+    /// no density.
+    fn slope(
+        &self,
+        at: &DVector<f64>,
+        step: &DVector<f64>,
+        from: &Self::Trace,
+    ) -> Result<Option<(Slope, Self::Trace)>>;
+}
+
+/// A posterior on the real line, some coordinates held.
+pub(crate) struct Held<'a, 'm> {
+    pub(crate) posterior: &'a Posterior<'m>,
+    pub(crate) held: &'a [usize],
+}
+
+impl Held<'_, '_> {
+    /// The slope at a place; `None` where there is no density.
+    pub(crate) fn slope_at(&self, at: &[f64]) -> Result<Option<Slope>> {
+        let about = self.posterior.information(at)?;
+        let slope = Slope {
+            height: about.density.on_line(),
+            gradient: about.gradient,
+            precision: about.precision,
+        };
+        Ok(slope.is_usable().then_some(slope))
+    }
+}
+
+impl Landscape for Held<'_, '_> {
+    type Trace = ();
+
+    fn held(&self) -> &[usize] {
+        self.held
+    }
+
+    fn slope(
+        &self,
+        at: &DVector<f64>,
+        _step: &DVector<f64>,
+        (): &(),
+    ) -> Result<Option<(Slope, ())>> {
+        Ok(self.slope_at(at.as_slice())?.map(|slope| (slope, ())))
+    }
+}
+
+/// When a climb ends.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Climb {
+    /// The most steps.
+    pub(crate) steps: usize,
+    /// The longest step along one axis.
+    pub(crate) longest: f64,
+    /// A gain of the log density below which a climb has arrived.
+    pub(crate) arrived: f64,
+}
+
+impl Default for Climb {
+    fn default() -> Self {
+        Self { steps: 60, longest: 2.0, arrived: 1e-3 }
+    }
+}
+
+/// How often a step is shortened before a climb gives up.
+const TRIES: usize = 8;
+
+impl Climb {
+    /// The place that a start leads to, with its slope and trace; `None` where
+    /// `ends_at` says on the way that it leads nowhere new.
+    pub(crate) fn ascend<L: Landscape>(
+        &self,
+        landscape: &L,
+        start: (DVector<f64>, Slope, L::Trace),
+        ends_at: impl Fn(&DVector<f64>, f64) -> bool,
+    ) -> Result<Option<(DVector<f64>, Slope, L::Trace)>> {
+        let (mut line, mut slope, mut trace) = start;
+        let mut lambda = 1e-2;
+        for _ in 0..self.steps {
+            let next =
+                self.step(landscape, (&line, &slope, &trace), &mut lambda)?;
+            let Some(next) = next else { break };
+            let gain = next.1.height - slope.height;
+            (line, slope, trace) = next;
+            if ends_at(&line, slope.height) {
+                return Ok(None);
+            }
+            if gain < self.arrived {
+                break;
+            }
+        }
+        Ok(Some((line, slope, trace)))
+    }
+
+    /// A step that climbs, with ever more damping until one does; `None` where
+    /// there is nothing to gain.
+    fn step<L: Landscape>(
+        &self,
+        landscape: &L,
+        (line, slope, trace): (&DVector<f64>, &Slope, &L::Trace),
+        lambda: &mut f64,
+    ) -> Result<Option<(DVector<f64>, Slope, L::Trace)>> {
+        for _ in 0..TRIES {
+            let Some(off) =
+                slope.step(landscape.held(), *lambda, self.longest)
+            else {
+                *lambda = (*lambda * 5.0).max(1e-6);
+                continue;
+            };
+            if slope.after(&off) - slope.height < self.arrived {
+                return Ok(None);
+            }
+            let next = line + &off;
+            if let Some((found, trace)) =
+                landscape.slope(&next, &off, trace)?
+                && found.height > slope.height
+            {
+                *lambda = (*lambda * 0.2).max(1e-9);
+                return Ok(Some((next, found, trace)));
+            }
+            *lambda = (*lambda * 5.0).max(1e-6);
+        }
+        Ok(None)
+    }
+}
 
 /// A peak of the density on the real line, with its normal approximation.
 #[derive(Debug, Clone)]
@@ -22,6 +203,12 @@ pub struct Peak {
 }
 
 impl Peak {
+    /// Where a climb ended.
+    pub(crate) fn of<T>((line, slope, _): (DVector<f64>, Slope, T)) -> Self {
+        let Slope { height, precision, .. } = slope;
+        Self { line, height, precision }
+    }
+
     /// The log of what the normal approximation integrates to (Laplace);
     /// `None` where the precision is not positive definite.
     pub fn log_evidence(&self) -> Option<f64> {
@@ -40,15 +227,6 @@ impl Peak {
     }
 }
 
-/// The most steps of a climb.
-const STEPS: usize = 60;
-/// The most of one that begins nearby.
-const FEW: usize = 8;
-/// A gain of the log density below which a climb has arrived.
-const ARRIVED: f64 = 1e-3;
-/// The longest step along one axis of the line.
-const LONGEST: f64 = 2.0;
-
 /// The peak that a start leads to; `None` where the start has no density.
 ///
 /// # Errors
@@ -57,101 +235,35 @@ pub fn climb(
     posterior: &Posterior<'_>,
     start: &[f64],
 ) -> Result<Option<Peak>> {
-    ascend(posterior, start, &[], STEPS)
+    climb_unless(posterior, start, |_, _| false)
 }
 
-/// The same within the places that share some coordinates with the start, near
-/// which the best of them lies.
-pub(super) fn climb_holding(
+/// The same; `None` too where the climb comes to a place and height of which
+/// `ends_at` says that it leads nowhere new.
+pub(super) fn climb_unless(
     posterior: &Posterior<'_>,
     start: &[f64],
-    held: &[usize],
+    ends_at: impl Fn(&DVector<f64>, f64) -> bool,
 ) -> Result<Option<Peak>> {
-    ascend(posterior, start, held, FEW)
+    let landscape = Held { posterior, held: &[] };
+    let Some(slope) = landscape.slope_at(start)? else { return Ok(None) };
+    let start = (DVector::from_column_slice(start), slope, ());
+    let found = Climb::default().ascend(&landscape, start, ends_at)?;
+    Ok(found.map(Peak::of))
 }
 
-/// A climb in so many steps at most, some coordinates held.
-fn ascend(
+/// The best place near a start among those that share some coordinates with
+/// it.
+pub(super) fn climb_holding(
     posterior: &Posterior<'_>,
     start: &[f64],
     held: &[usize],
     steps: usize,
 ) -> Result<Option<Peak>> {
-    let mut line = DVector::from_column_slice(start);
-    let mut about = posterior.information(start)?;
-    if !is_usable(&about) {
-        return Ok(None);
-    }
-    let mut lambda = 1e-2;
-    let mut idle = 0;
-    for _ in 0..steps {
-        let height = about.density.on_line();
-        let Some(next) = step(posterior, &line, &about, held, &mut lambda)?
-        else {
-            break;
-        };
-        let information = posterior.information(next.as_slice())?;
-        if !is_usable(&information) {
-            break;
-        }
-        (line, about) = (next, information);
-        let gain = about.density.on_line() - height;
-        idle = if gain < ARRIVED { idle + 1 } else { 0 };
-        if idle == 2 {
-            break;
-        }
-    }
-    let height = about.density.on_line();
-    Ok(Some(Peak { line, height, precision: about.precision }))
-}
-
-fn is_usable(about: &Information) -> bool {
-    about.density.on_line().is_finite()
-        && about.gradient.iter().all(|g| g.is_finite())
-        && about.precision.iter().all(|p| p.is_finite())
-}
-
-/// A step that climbs, with ever more damping until one does.
-fn step(
-    posterior: &Posterior<'_>,
-    line: &DVector<f64>,
-    about: &Information,
-    held: &[usize],
-    lambda: &mut f64,
-) -> Result<Option<DVector<f64>>> {
-    let height = about.density.on_line();
-    let (mut precision, mut gradient) =
-        (about.precision.clone(), about.gradient.clone());
-    for &i in held {
-        precision.row_mut(i).fill(0.0);
-        precision.column_mut(i).fill(0.0);
-        (precision[(i, i)], gradient[i]) = (1.0, 0.0);
-    }
-    for _ in 0..10 {
-        if let Some(mut off) = damped_step(&precision, &gradient, *lambda) {
-            off *= (LONGEST / off.amax()).min(1.0);
-            let next = line + off;
-            let density = posterior.density(Point::Line(next.as_slice()))?;
-            if density.on_line() > height && density.rejected.is_none() {
-                *lambda = (*lambda * 0.2).max(1e-9);
-                return Ok(Some(next));
-            }
-        }
-        *lambda = (*lambda * 5.0).max(1e-6);
-    }
-    Ok(None)
-}
-
-/// The step that solves (P + lambda diag P) step = gradient; `None` where that
-/// is not positive definite.
-pub(crate) fn damped_step(
-    precision: &DMatrix<f64>,
-    gradient: &DVector<f64>,
-    lambda: f64,
-) -> Option<DVector<f64>> {
-    let mut damped = precision.clone();
-    for i in 0..gradient.len() {
-        damped[(i, i)] += lambda * damped[(i, i)] + 1e-6;
-    }
-    Some(damped.cholesky()?.solve(gradient))
+    let landscape = Held { posterior, held };
+    let Some(slope) = landscape.slope_at(start)? else { return Ok(None) };
+    let climb = Climb { steps, ..Climb::default() };
+    let start = (DVector::from_column_slice(start), slope, ());
+    let found = climb.ascend(&landscape, start, |_, _| false)?;
+    Ok(found.map(Peak::of))
 }

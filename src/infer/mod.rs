@@ -5,24 +5,32 @@
 //! what it cost. Every random number comes from the seed by a fixed path, so
 //! a run is the same to the last bit on any number of threads.
 
+mod adapt;
 mod backends;
+mod check;
 mod climb;
-mod conditional;
 mod display;
-mod nested;
+mod estimate;
+mod groups;
+pub(crate) mod nested;
+mod profile;
 mod proposal;
+mod schedule;
+mod search;
 pub(crate) mod simplex;
 mod start;
-mod walk;
+mod temper;
 mod weights;
 
+pub(crate) use adapt::Frozen;
 pub use backends::*;
-pub(crate) use climb::damped_step;
+pub(crate) use climb::{Climb, Landscape, Slope};
 pub use climb::{Peak, climb};
-pub(crate) use conditional::{Conditional, Held, Integral, Integration};
-pub use nested::{Group, Grouped};
+pub(crate) use estimate::Precision;
+pub use groups::{Group, Grouped};
 pub use proposal::Mixture;
 pub(crate) use proposal::student_constant;
+pub use search::{HeldGrid, HeldPlace, SearchSpace};
 pub(crate) use weights::systematic;
 
 use std::fmt::Debug;
@@ -179,6 +187,11 @@ pub const BACKENDS: &[Entry] = &[
         name: "importance",
         about: "importance sampling by a Student-t mixture, with evidence",
         make: |effort| Box::new(ImportanceSampling::of_effort(effort)),
+    },
+    Entry {
+        name: "laplace-mixture",
+        about: "importance sampling by Laplace's approximations of all modes",
+        make: |_| Box::new(LaplaceMixture::default()),
     },
     Entry {
         name: "bridge",

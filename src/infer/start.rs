@@ -64,6 +64,36 @@ pub(super) fn drawn(
     Ok(whole.then_some((density, found.line)))
 }
 
+/// Of how many whole draws from the prior the likeliest is a start, and how
+/// many are made for these at the most.
+const DRAWN: usize = 8;
+const TRIES: usize = 200;
+
+/// The likeliest of a few draws from the prior; `None` where all are cut
+/// short.
+pub(super) fn likely(
+    posterior: &Posterior<'_>,
+    seed: Seed,
+) -> Result<Option<Vec<f64>>> {
+    let mut rng = seed.rng();
+    let mut best: Option<(f64, Vec<f64>)> = None;
+    let mut whole = 0;
+    for _ in 0..TRIES {
+        let Some((density, line)) = drawn(posterior, &mut rng)? else {
+            continue;
+        };
+        let log = density.log_likelihood;
+        if best.as_ref().is_none_or(|(most, _)| log > *most) {
+            best = Some((log, line));
+        }
+        whole += 1;
+        if whole == DRAWN {
+            break;
+        }
+    }
+    Ok(best.map(|(_, line)| line))
+}
+
 /// From how many good places each start is chosen.
 const CHOICE: usize = 4;
 

@@ -35,20 +35,28 @@ pub(in crate::infer) fn normalised(particles: &[Particle]) -> Vec<f64> {
     logs.map(|l| (l - total).exp()).collect()
 }
 
+/// The effective share of particles, and the Pareto tail index of their
+/// weights.
+pub(in crate::infer) fn quality(found: &[Particle]) -> (f64, f64) {
+    let logs: Vec<f64> = found.iter().map(Particle::log_weight).collect();
+    let (_, tail) = psis(&logs);
+    (effective(&logs, 1.0) / logs.len() as f64, tail)
+}
+
 /// What weighted particles say.
-pub(in crate::infer) struct Sum {
+pub(crate) struct Sum {
     /// ln of the mean weight, and its standard error.
-    pub(in crate::infer) log: f64,
-    pub(in crate::infer) se: f64,
+    pub(crate) log: f64,
+    pub(crate) se: f64,
     /// The weights, adding up to 1, and how many even ones they are worth.
     weights: Vec<f64>,
     effective: f64,
-    pub(in crate::infer) warnings: Vec<String>,
+    pub(crate) warnings: Vec<String>,
 }
 
 impl Sum {
     /// As many even draws as the weights are worth, and a hundred at least.
-    pub(in crate::infer) fn chosen(&self, seed: Seed) -> Vec<usize> {
+    pub(crate) fn chosen(&self, seed: Seed) -> Vec<usize> {
         let count = self.effective.max(100.0) as usize;
         systematic(&self.weights, count, &mut seed.rng())
     }

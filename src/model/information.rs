@@ -17,7 +17,7 @@ use crate::error::{Error, Outcome, Result};
 use crate::noise::Noise;
 use crate::observe::Series;
 use crate::prior::Prior;
-use crate::scalar::{Grad, Kind, Plain, Real};
+use crate::scalar::{Grad, Kind, Real};
 
 /// The log density on the real line about a point, to second order.
 #[derive(Debug, Clone)]
@@ -54,13 +54,15 @@ impl Information {
     }
 }
 
-/// Derivatives of the innovations, one column a datum.
+/// Derivatives of the innovations, one column a datum, and how the priors bend.
 #[derive(Debug, Default)]
 struct Columns {
     dimension: usize,
     first: usize,
     next: usize,
     numbers: Vec<f64>,
+    /// Minus the second derivative of each prior's log density along the line.
+    bends: Vec<f64>,
 }
 
 impl Columns {
@@ -77,6 +79,12 @@ impl Columns {
 }
 
 impl<K: Kind> Listener<K> for Columns {
+    fn parameter(&mut self, declaration: &Declaration<'_, K>) {
+        if self.first == 0 {
+            self.bends.push(bend(declaration));
+        }
+    }
+
     fn series(
         &mut self,
         series: &Series,
@@ -95,22 +103,18 @@ impl<K: Kind> Listener<K> for Columns {
     }
 }
 
-/// Minus the second derivative of each prior's log density along the line.
-#[derive(Debug, Default)]
-struct Curvatures(Vec<f64>);
-
-impl Listener<Plain> for Curvatures {
-    fn parameter(&mut self, declaration: &Declaration<'_, Plain>) {
-        let support = declaration.prior.support();
-        let at = |z: f64| {
-            let (x, log_jacobian) = support.from_line(Real::new(z));
-            (declaration.prior.log_density(x) + log_jacobian).value()
-        };
-        let z = support.to_line(declaration.value);
-        let h = 1e-3;
-        let bend = (2.0 * at(z) - at(z - h) - at(z + h)) / (h * h);
-        self.0.push(if bend.is_finite() { bend.max(0.0) } else { 0.0 });
-    }
+/// Minus the second derivative of a prior's log density along the line, where
+/// that is positive.
+fn bend<K: Kind>(declaration: &Declaration<'_, K>) -> f64 {
+    let support = declaration.prior.support();
+    let at = |z: f64| {
+        let (x, log_jacobian) = support.from_line(Real::new(z));
+        (declaration.prior.log_density(x) + log_jacobian).value()
+    };
+    let z = support.to_line(declaration.value);
+    let h = 1e-3;
+    let bend = (2.0 * at(z) - at(z - h) - at(z + h)) / (h * h);
+    if bend.is_finite() { bend.max(0.0) } else { 0.0 }
 }
 
 /// The information of a program at a place on the real line.
@@ -118,9 +122,6 @@ pub(super) fn information<P: Program>(
     program: &P,
     z: &[f64],
 ) -> Result<Information> {
-    let mut curvatures = Curvatures::default();
-    let source = Source::Line { z, first: 0 };
-    run::<Plain, P>(program, source, Some(z.len()), Some(&mut curvatures))?;
     let mut gradient = DVector::zeros(z.len());
     let mut columns = Columns { dimension: z.len(), ..Columns::default() };
     let density = match z.len() {
@@ -129,9 +130,10 @@ pub(super) fn information<P: Program>(
         5..=16 => fill::<Grad<8>, P>(program, z, &mut gradient, &mut columns),
         _ => fill::<Grad<16>, P>(program, z, &mut gradient, &mut columns),
     }?;
+    let bends = columns.bends;
     let columns = DMatrix::from_vec(z.len(), columns.next, columns.numbers);
     let mut precision = &columns * columns.transpose();
-    for (i, bend) in curvatures.0.iter().take(z.len()).enumerate() {
+    for (i, bend) in bends.iter().take(z.len()).enumerate() {
         precision[(i, i)] += bend;
     }
     Ok(Information { density, gradient, precision })

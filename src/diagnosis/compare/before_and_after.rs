@@ -9,7 +9,7 @@ use crate::diagnosis::findings::{Improvement, Pair, Pictured};
 use crate::draws::{Draws, uncorrelated_p};
 use crate::elpd::leave_one_out;
 use crate::error::{Error, Result};
-use crate::infer::{Backend, LaplaceMixture, Quiet, climb};
+use crate::infer::{Backend, LaplaceMixture, Quiet, SearchSpace, climb};
 use crate::mechanism::Mechanism;
 use crate::model::{Point, Posterior, Program, With};
 use crate::observe::{Event, Quantity, Series};
@@ -172,12 +172,11 @@ fn held_out<P: Program>(
         };
         whole.collect(Point::Line(peak.line.as_slice()))?.1.predictions
     } else {
-        let search = LaplaceMixture {
-            starts: 6,
-            from: vec![shown.fit.best.clone()],
-            draws: 1000,
-            ..LaplaceMixture::default()
-        };
+        let search = LaplaceMixture::within(SearchSpace {
+            prior_starts: 6,
+            starts: vec![shown.fit.best.clone()],
+            grids: Vec::new(),
+        });
         let seed = shown.first.child(1);
         let found = search.explore(&posterior, seed, &Quiet)?;
         let Some(draws) = found.draws else { return Ok(f64::NAN) };

@@ -1,13 +1,14 @@
-//! Which mechanism explains the mismatch: evidence of each, and of pairs.
+//! Which mechanism explains the mismatch: evidence of each, and of several
+//! together.
 
 use rayon::prelude::*;
 
-use crate::diagnosis::evidence::fit::{Fit, fit, spread};
-use crate::diagnosis::evidence::ridges::{narrow_ridges, ridges};
+use super::fit::{Fit, Prospect, fit, prospect, spread};
+use super::grids::{edge_grids, even_grids};
 use crate::error::Result;
-use crate::infer::{LaplaceMixture, Progress, Ridge};
+use crate::infer::{LaplaceMixture, Precision, Progress, SearchSpace};
 use crate::mechanism::Mechanism;
-use crate::model::{Posterior, Program, With};
+use crate::model::Program;
 use crate::seed::Seed;
 
 /// What the evidence says of a model and of each mechanism added to it.
@@ -23,13 +24,24 @@ pub struct Attribution {
 /// of so many parameters somewhere in its prior.
 fn climbs(unknowns: usize) -> usize {
     match unknowns {
-        1 => 10,
-        2 => 16,
-        _ => 32,
+        1 => 4,
+        2 => 6,
+        _ => 8,
     }
 }
 
-/// Fits the model as it is, and with each mechanism.
+/// How many climbs of a single mechanism start from draws of the whole prior.
+const PRIOR_STARTS: usize = 2;
+
+/// What is so far below the best, in ln, is estimated roughly: it has less
+/// than a hundred-thousandth of the probability.
+const IRRELEVANT: f64 = 12.0;
+
+/// How much higher, in ln, an evidence may come to be whose proposal has poor
+/// weights yet.
+const OPEN: f64 = 6.0;
+
+/// Fits the model as it is, and with each mechanism; sharply where it matters.
 ///
 /// # Errors
 /// An improper prior, or a model that fails.
@@ -41,41 +53,71 @@ pub fn attribute<P: Program>(
 ) -> Result<Attribution> {
     let none = fit(program, &[], &LaplaceMixture::default(), seed.child(0))?;
     progress.begin("weighing mechanisms", Some(catalogue.len() as u64));
-    let candidates = catalogue
+    let all: Vec<(usize, &dyn Mechanism)> =
+        catalogue.iter().map(AsRef::as_ref).enumerate().collect();
+    let of = |i: usize| seed.child(1 + i as u64);
+    let prospects = all
         .par_iter()
-        .enumerate()
-        .map(|(i, mechanism)| {
-            let seed = seed.child(1 + i as u64);
-            let fit = single(program, mechanism.as_ref(), &none, seed)
+        .map(|&(i, mechanism)| {
+            let space = single(mechanism, none.own(), of(i).child(0));
+            let backend = LaplaceMixture::within(space);
+            let seed = of(i).child(1);
+            let found = prospect(program, &[mechanism], backend, seed)
                 .map_err(|error| error.within(mechanism.name()));
             progress.advance(1);
-            fit
+            found
+        })
+        .collect::<Result<Vec<Prospect>>>()?;
+    let logs = prospects.iter().map(Prospect::log);
+    let best = logs.fold(none.log_evidence, f64::max);
+    let candidates = all
+        .into_par_iter()
+        .zip(prospects)
+        .map(|((i, mechanism), prospect)| {
+            let precision = precision(&prospect, best - IRRELEVANT);
+            prospect
+                .fit(program, &[mechanism], precision, of(i).child(2))
+                .map_err(|error| error.within(mechanism.name()))
         })
         .collect::<Result<Vec<_>>>()?;
     Ok(Attribution { none, candidates })
 }
 
-fn single<P: Program>(
-    program: &P,
+/// How sharply what has such a prospect is worth estimating, if evidences
+/// below a threshold do not matter.
+fn precision(prospect: &Prospect, threshold: f64) -> Precision {
+    let reach = if prospect.is_settled() { 1.0 } else { OPEN };
+    if prospect.log() + reach > threshold {
+        Precision::Sharp
+    } else {
+        Precision::Rough
+    }
+}
+
+/// Where a single mechanism is looked for.
+fn single(mechanism: &dyn Mechanism, own: &[f64], seed: Seed) -> SearchSpace {
+    let around = around(mechanism, None, &[], own, seed);
+    SearchSpace { prior_starts: PRIOR_STARTS, ..around }
+}
+
+/// Where a mechanism is looked for, all other coordinates beginning at those
+/// before and after it: anywhere in its prior, along its grids, and at the
+/// best place that is known of it.
+fn around(
     mechanism: &dyn Mechanism,
-    none: &Fit,
+    known: Option<&[f64]>,
+    before: &[f64],
+    after: &[f64],
     seed: Seed,
-) -> Result<Fit> {
+) -> SearchSpace {
     let unknowns = mechanism.unknowns();
-    let own = none.own();
-    let from = spread(&unknowns, climbs(unknowns.len()), seed.child(0))
-        .into_iter()
-        .map(|(place, _)| [&place, own].concat())
-        .collect();
-    let mut ridges = ridges(mechanism, &[], own, seed.child(1));
-    ridges.extend(narrow_ridges(mechanism, own));
-    let backend = LaplaceMixture {
-        starts: 4,
-        from,
-        ridges,
-        ..LaplaceMixture::default()
-    };
-    fit(program, &[mechanism], &backend, seed.child(2))
+    let joined = |place: &[f64]| [before, place, after].concat();
+    let anywhere = spread(&unknowns, climbs(unknowns.len()), seed.child(0));
+    let places = anywhere.iter().map(|(place, _)| &place[..]);
+    let starts = known.into_iter().chain(places).map(joined).collect();
+    let mut grids = even_grids(mechanism, before, after, seed.child(1));
+    grids.extend(edge_grids(mechanism, before, after));
+    SearchSpace { prior_starts: 0, starts, grids }
 }
 
 /// A model whose mechanisms are known, with where it is best on the line.
@@ -85,22 +127,6 @@ pub(crate) struct Known<'a> {
     pub(crate) added: &'a [f64],
     /// The model's own parameters.
     pub(crate) own: &'a [f64],
-}
-
-/// Starts and ridges for one more mechanism, all else where it is best.
-fn ways(
-    added: (&dyn Mechanism, &Fit),
-    before: &[f64],
-    after: &[f64],
-    seed: Seed,
-) -> (Vec<Vec<f64>>, Vec<Ridge>) {
-    let unknowns = added.0.unknowns();
-    let joined = |place: &[f64]| [before, place, after].concat();
-    let mut from = vec![joined(added.1.mechanism())];
-    let anywhere =
-        spread(&unknowns, climbs(unknowns.len()) / 2, seed.child(0));
-    from.extend(anywhere.iter().map(|(place, _)| joined(place)));
-    (from, ridges(added.0, before, after, seed.child(1)))
 }
 
 /// Fits a pair: from the best of either, with the other anywhere; `None`
@@ -115,56 +141,61 @@ pub fn pair<P: Program>(
     hurdle: f64,
     seed: Seed,
 ) -> Result<Option<Fit>> {
-    let [a, b] = [(mechanisms[0], fits[0]), (mechanisms[1], fits[1])];
-    let second = ways(b, a.1.mechanism(), a.1.own(), seed.child(0));
-    let after = [b.1.mechanism(), b.1.own()].concat();
-    let first = ways(a, &[], &after, seed.child(1));
-    let backend = LaplaceMixture {
-        starts: 0,
-        from: [second.0, first.0].concat(),
-        ridges: [second.1, first.1].concat(),
-        ..LaplaceMixture::default()
-    };
-    fit_if_worth(program, &mechanisms, &backend, hurdle, seed.child(9))
-}
-
-/// How far, in ln, a normal approximation may fall short of an evidence.
-const SHORT: f64 = 3.0;
-
-/// Fits mechanisms only where the peaks promise an evidence of about the
-/// hurdle: most combinations are far below it.
-fn fit_if_worth<P: Program>(
-    program: &P,
-    mechanisms: &[&dyn Mechanism],
-    backend: &LaplaceMixture,
-    hurdle: f64,
-    seed: Seed,
-) -> Result<Option<Fit>> {
-    let with = With::new(program, mechanisms);
-    let posterior = Posterior::new(&with)?;
-    let outlook = backend.outlook(&posterior, seed.child(0))?;
-    if outlook < hurdle - SHORT {
-        return Ok(None);
-    }
-    fit(program, mechanisms, backend, seed.child(1)).map(Some)
+    let ([a, b], [of_a, of_b]) = (mechanisms, fits);
+    let (mut space, more) = (
+        around(
+            b,
+            Some(of_b.mechanism()),
+            of_a.mechanism(),
+            of_a.own(),
+            seed.child(0),
+        ),
+        around(
+            a,
+            Some(of_a.mechanism()),
+            &[],
+            &[of_b.mechanism(), of_b.own()].concat(),
+            seed.child(1),
+        ),
+    );
+    space.starts.extend(more.starts);
+    space.grids.extend(more.grids);
+    fit_if_worth(program, &mechanisms, space, hurdle, seed.child(9))
 }
 
 /// Fits one mechanism more, from the best of those that are known.
 pub(crate) fn extend<P: Program>(
     program: &P,
     known: &Known<'_>,
-    added: (&dyn Mechanism, &Fit),
+    (added, fit): (&dyn Mechanism, &Fit),
     hurdle: f64,
     seed: Seed,
 ) -> Result<Option<Fit>> {
-    let (from, ridges) = ways(added, known.added, known.own, seed.child(0));
+    let best = Some(fit.mechanism());
+    let space = around(added, best, known.added, known.own, seed.child(0));
     let mut mechanisms = known.mechanisms.to_vec();
-    mechanisms.push(added.0);
-    let backend = LaplaceMixture {
-        starts: 0,
-        from,
-        ridges,
-        ..LaplaceMixture::default()
-    };
-    fit_if_worth(program, &mechanisms, &backend, hurdle, seed.child(9))
+    mechanisms.push(added);
+    fit_if_worth(program, &mechanisms, space, hurdle, seed.child(9))
+}
+
+/// How far, in ln, what a search promises may fall short of an evidence.
+const SHORT: f64 = 3.0;
+
+/// Fits mechanisms only where they promise an evidence of about the hurdle:
+/// most combinations are far below it.
+fn fit_if_worth<P: Program>(
+    program: &P,
+    mechanisms: &[&dyn Mechanism],
+    space: SearchSpace,
+    hurdle: f64,
+    seed: Seed,
+) -> Result<Option<Fit>> {
+    let backend = LaplaceMixture::within(space);
+    let prospect = prospect(program, mechanisms, backend, seed.child(0))?;
+    match precision(&prospect, hurdle - SHORT) {
+        Precision::Rough => Ok(None),
+        sharp => {
+            prospect.fit(program, mechanisms, sharp, seed.child(1)).map(Some)
+        }
+    }
 }

@@ -5,7 +5,9 @@ use rand::RngExt;
 use crate::diagnosis::evidence::apart::explore;
 use crate::draws::Draws;
 use crate::error::{Error, Result};
-use crate::infer::{Backend, LaplaceMixture, Quiet};
+use crate::infer::{
+    Backend, Frozen, Inference, LaplaceMixture, Precision, Quiet,
+};
 use crate::mechanism::{Mechanism, Unknown};
 use crate::model::{Point, Posterior, Program, With};
 use crate::prior::{AnyPrior, Prior};
@@ -41,6 +43,71 @@ impl Fit {
     }
 }
 
+/// What a search found of a program with mechanisms, before it is estimated.
+#[derive(Debug)]
+pub(crate) struct Prospect {
+    backend: LaplaceMixture,
+    /// A proposal for all coordinates; several events have each their own.
+    frozen: Option<Frozen>,
+    log: f64,
+}
+
+impl Prospect {
+    /// About ln of the evidence.
+    pub(crate) fn log(&self) -> f64 {
+        self.log
+    }
+
+    /// Whether the proposal's weights are good.
+    pub(crate) fn is_settled(&self) -> bool {
+        self.frozen.as_ref().is_some_and(|frozen| frozen.good)
+    }
+
+    /// The fit of the same program and mechanisms.
+    ///
+    /// # Errors
+    /// A model that fails.
+    pub(crate) fn fit<P: Program>(
+        &self,
+        program: &P,
+        mechanisms: &[&dyn Mechanism],
+        precision: Precision,
+        seed: Seed,
+    ) -> Result<Fit> {
+        let with = With::new(program, mechanisms);
+        let posterior = Posterior::new(&with)?;
+        let backend = &self.backend;
+        let found = match &self.frozen {
+            Some(frozen) => {
+                backend.estimate(&posterior, frozen, precision, seed, &Quiet)
+            }
+            None => explore(program, mechanisms, &posterior, backend, seed),
+        };
+        fit_of(&posterior, found?, with.added())
+    }
+}
+
+/// Searches a program with mechanisms, and learns where it lies.
+///
+/// # Errors
+/// An improper prior, or a model that fails.
+pub(crate) fn prospect<P: Program>(
+    program: &P,
+    mechanisms: &[&dyn Mechanism],
+    backend: LaplaceMixture,
+    seed: Seed,
+) -> Result<Prospect> {
+    let with = With::new(program, mechanisms);
+    let posterior = Posterior::new(&with)?;
+    if program.events() > 1 {
+        let log = backend.outlook(&posterior, seed)?;
+        return Ok(Prospect { backend, frozen: None, log });
+    }
+    let frozen = backend.freeze(&posterior, seed)?;
+    let log = frozen.log;
+    Ok(Prospect { backend, frozen: Some(frozen), log })
+}
+
 /// Fits a program with mechanisms, looking for modes as told.
 ///
 /// # Errors
@@ -57,15 +124,24 @@ pub fn fit<P: Program>(
         1 => backend.explore(&posterior, seed, &Quiet)?,
         _ => explore(program, mechanisms, &posterior, backend, seed)?,
     };
+    fit_of(&posterior, found, with.added())
+}
+
+/// A fit from what an inference found.
+fn fit_of(
+    posterior: &Posterior<'_>,
+    found: Inference,
+    added: usize,
+) -> Result<Fit> {
     let (Some(draws), Some(evidence)) = (found.draws, found.evidence) else {
         return Err(Error::inference("a fit without draws or evidence"));
     };
     Ok(Fit {
         log_evidence: evidence.log,
         se: evidence.se,
-        best: likeliest(&posterior, &draws)?,
+        best: likeliest(posterior, &draws)?,
         draws,
-        added: with.added(),
+        added,
         warnings: found.warnings,
     })
 }

@@ -3,4 +3,4 @@
 pub(crate) mod apart;
 pub(crate) mod attribute;
 pub(crate) mod fit;
-pub(crate) mod ridges;
+mod grids;

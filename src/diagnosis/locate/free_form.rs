@@ -1,31 +1,31 @@
-//! A force of free form: a step function whose values follow a Gaussian
-//! process.
+//! A force of free form: a step function along an axis.
 
 use nalgebra::{DMatrix, DVector};
 
-use super::look::Process;
+use super::process::Process;
 use super::{CELLS, NOUN, SAYS};
 use crate::block::List;
 use crate::error::{Error, Result};
-use crate::mechanism::{Candidate, Change, Family, Missing, Noun, Unknown};
-use crate::observe::Extent;
+use crate::mechanism::{
+    Candidate, Change, Extent, Family, Missing, Noun, Unknown,
+};
 use crate::physics::Rate;
 use crate::physics::forces::{Axis, Range, STEPS, Shape, Term};
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
 
-/// A force of free form: a step function along an axis, whose values follow
-/// a Gaussian process of given length and size.
+/// A force of free form, in [`CELLS`] cells along an axis.
 #[derive(Debug, Clone)]
 pub(super) struct FreeForm {
     extent: Extent,
     axis: Axis,
-    /// The factor of the process's covariance.
-    factor: DMatrix<f64>,
+    /// What makes the cells' values of the unknowns; `None` where these are
+    /// the values themselves.
+    factor: Option<DMatrix<f64>>,
 }
 
 /// The range that a free-form force covers along an axis.
-pub(crate) fn range(extent: &Extent, axis: Axis) -> Range {
+pub(super) fn range(extent: &Extent, axis: Axis) -> Range {
     match axis {
         Axis::Place => Range { begin: extent.begin, span: extent.run },
         Axis::Time => Range { begin: 0.0, span: extent.duration },
@@ -34,37 +34,27 @@ pub(crate) fn range(extent: &Extent, axis: Axis) -> Range {
 }
 
 impl FreeForm {
-    /// The process along an axis; its length stands for as large a part of
-    /// the run on the other axes.
+    /// Independent cells, each standard normal beforehand \[m/s2\]: any
+    /// process's force is one of these.
+    pub(super) fn cells(extent: &Extent, axis: Axis) -> Self {
+        Self { extent: *extent, axis, factor: None }
+    }
+
+    /// The force of a process, as independent waves.
     pub(super) fn new(
         extent: &Extent,
         axis: Axis,
         process: Process,
     ) -> Result<Self> {
-        let (length, size) = (process.length(), process.size());
-        let step = extent.run / CELLS as f64;
-        let covariance = DMatrix::from_fn(CELLS, CELLS, |i, j| {
-            let apart = (i as f64 - j as f64) * step / length;
-            let nugget = if i == j { 1e-6 } else { 0.0 };
-            size * size * ((-0.5 * apart * apart).exp() + nugget)
-        });
-        let factor = covariance
-            .cholesky()
-            .ok_or_else(|| Error::inference("no such Gaussian process"))?
-            .l();
+        let factor = Some(process.factor(extent)?);
         Ok(Self { extent: *extent, axis, factor })
-    }
-
-    /// The force \[m/s2\] in each cell that independent waves make.
-    pub(super) fn force(&self, waves: &[f64]) -> Vec<f64> {
-        let force = &self.factor * DVector::from_column_slice(waves);
-        force.as_slice().to_vec()
     }
 
     /// The waves that make a force.
     pub(super) fn waves(&self, force: &[f64]) -> Result<Vec<f64>> {
+        let Some(factor) = &self.factor else { return Ok(force.to_vec()) };
         let force = DVector::from_column_slice(force);
-        let waves = self.factor.solve_lower_triangular(&force);
+        let waves = factor.solve_lower_triangular(&force);
         let waves = waves.map(|waves| waves.as_slice().to_vec());
         waves.ok_or_else(|| Error::inference("no such Gaussian process"))
     }
@@ -103,12 +93,15 @@ impl Candidate for FreeForm {
 
 impl Missing for FreeForm {
     fn change<K: Kind>(&self, values: &[Real<K>]) -> Change<K> {
-        let cells: List<Real<K>> = (0..CELLS)
-            .map(|i| {
-                let row = values[..=i].iter().enumerate();
-                row.map(|(j, x)| *x * self.factor[(i, j)]).sum()
-            })
-            .collect();
+        let cells: List<Real<K>> = match &self.factor {
+            None => values.iter().copied().collect(),
+            Some(factor) => (0..CELLS)
+                .map(|i| {
+                    let row = values[..=i].iter().enumerate();
+                    row.map(|(j, x)| *x * factor[(i, j)]).sum()
+                })
+                .collect(),
+        };
         let rate = Rate { constant: Real::new(-1.0), ..Rate::default() };
         let range = range(&self.extent, self.axis);
         let mut change = Change::default();

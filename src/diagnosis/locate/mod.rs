@@ -11,35 +11,35 @@
 mod free_form;
 mod look;
 mod marginal;
+mod process;
+mod tangent;
 
 use rayon::prelude::*;
 
-use crate::diagnosis::evidence::fit::Fit;
-use crate::draws::{Draws, log_sum_exp, median};
+use crate::diagnosis::evidence::fit::{Fit, likeliest};
+use crate::draws::{Draws, median};
 use crate::error::Result;
-use crate::infer::{Integral, Integration};
-use crate::mechanism::Mechanism;
+use crate::infer::nested::{Effort, Integral, Learned, integrated, learn};
+use crate::mechanism::{Extent, Mechanism};
 use crate::model::{Posterior, Program, With};
-use crate::observe::Extent;
 use crate::physics::forces::Axis;
 use crate::seed::Seed;
 
-use free_form::FreeForm;
-pub(crate) use free_form::range;
-pub(crate) use look::Process;
+use free_form::{FreeForm, range};
 use look::{Sought, proposal};
 use marginal::Marginal;
+pub(super) use process::Process;
+use tangent::Cells;
 
 /// How many cells the force has.
 pub const CELLS: usize = 40;
-/// How many rounds of draws are made along an axis at the most, and a
-/// standard error of ln evidence that is small enough.
-const ROUNDS: usize = 8;
-const SHARP: f64 = 0.12;
-/// The prior median of the process's length \[m\], and the sd of its log.
-const LENGTH: (f64, f64) = (20.0, 0.7);
-/// The prior scale of the force \[m/s2\].
-const SIZE: f64 = 1.0;
+/// How many draws of the process and the model's own parameters are made.
+const EFFORT: Effort =
+    Effort { learning: 80, rounds: 4, last: (100, 600), error: 0.1 };
+/// The same along an axis whose force is far less likely than along another,
+/// by so much in ln.
+const FEW: Effort = Effort { last: (60, 60), ..EFFORT };
+const FAR: f64 = 5.0;
 /// What a force of free form is called, and what it says.
 pub(crate) const NOUN: &str =
     "a force that no mechanism of the catalogue describes";
@@ -76,7 +76,7 @@ pub(crate) fn free_fit<P: Program>(
     let fit = Fit {
         log_evidence: none.log_evidence + force.log_bayes_factor,
         se: force.se.hypot(none.se),
-        best: crate::diagnosis::evidence::fit::likeliest(&posterior, &draws)?,
+        best: likeliest(&posterior, &draws)?,
         draws,
         added: CELLS,
         warnings: none.warnings.clone(),
@@ -121,82 +121,61 @@ pub fn locate<P: Program>(
     none: &Fit,
     seed: Seed,
 ) -> Result<FreeForce> {
-    let mut search = [Search::new(program, extent, axis, none, seed)?];
-    sharpen(&mut search)?;
-    search[0].force(none)
+    located(program, extent, &[axis], none, seed).map(|mut all| all.remove(0))
 }
 
-/// The same along every axis; as sharply as their mean evidence asks for.
-pub(crate) fn locate_all<P: Program>(
+/// The same along every axis; most sharply where the force is likely.
+pub(super) fn locate_all<P: Program>(
     program: &P,
     extent: &Extent,
     none: &Fit,
     seed: Seed,
 ) -> Result<Vec<FreeForce>> {
-    let axes = [Axis::Place, Axis::Time, Axis::Speed].into_par_iter();
-    let mut all: Vec<Search<'_, P>> = axes
+    let axes = [Axis::Place, Axis::Time, Axis::Speed];
+    located(program, extent, &axes, none, seed)
+}
+
+fn located<P: Program>(
+    program: &P,
+    extent: &Extent,
+    axes: &[Axis],
+    none: &Fit,
+    seed: Seed,
+) -> Result<Vec<FreeForce>> {
+    let forms: Vec<FreeForm> =
+        axes.iter().map(|axis| FreeForm::cells(extent, *axis)).collect();
+    let with: Vec<With<'_, P>> =
+        forms.iter().map(|form| With::new(program, &[form])).collect();
+    let posteriors = with.iter().map(|with| Posterior::new(with));
+    let posteriors = posteriors.collect::<Result<Vec<_>>>()?;
+    let shared = program.events() > 1;
+    let learned = posteriors
+        .par_iter()
         .enumerate()
-        .map(|(i, axis)| {
-            Search::new(program, extent, axis, none, seed.child(i as u64))
+        .map(|(i, posterior)| {
+            let sought = Sought { cells: Cells(posterior), extent };
+            let looks = sought.looks(none.own())?;
+            let mixture = proposal(&looks)?;
+            let marginal = Marginal { sought, looks, shared };
+            let seed = seed.child(i as u64).child(0);
+            let learned = learn(&marginal, mixture, EFFORT, seed)?;
+            Ok((marginal, learned))
         })
-        .collect::<Result<_>>()?;
-    sharpen(&mut all)?;
-    all.iter().map(|search| search.force(none)).collect()
-}
-
-/// Draws on until the mean evidence is sharp enough, always where that gains
-/// most.
-fn sharpen<P: Program>(all: &mut [Search<'_, P>]) -> Result<()> {
-    for _ in 0..ROUNDS * all.len() {
-        let known: Vec<(f64, f64)> =
-            all.iter().map(|search| search.integration.known()).collect();
-        let total = log_sum_exp(known.iter().map(|(log, _)| *log));
-        let errors: Vec<f64> =
-            known.iter().map(|(log, se)| (log - total).exp() * se).collect();
-        let all_errors = errors.iter().map(|e| e * e).sum::<f64>().sqrt();
-        let open = (0..all.len())
-            .filter(|&i| all[i].integration.rounds() < ROUNDS)
-            .max_by(|&i, &j| errors[i].total_cmp(&errors[j]));
-        match open {
-            Some(i) if all_errors > SHARP => {
-                let Search { marginal, integration } = &mut all[i];
-                integration.go_on(marginal)?;
-            }
-            _ => break,
-        }
-    }
-    Ok(())
-}
-
-/// The inference of a free-form force under way.
-struct Search<'a, P> {
-    marginal: Marginal<'a, P>,
-    integration: Integration,
-}
-
-impl<'a, P: Program> Search<'a, P> {
-    /// After the first round.
-    fn new(
-        program: &'a P,
-        extent: &'a Extent,
-        axis: Axis,
-        none: &Fit,
-        seed: Seed,
-    ) -> Result<Self> {
-        let sought = Sought { program, extent, axis };
-        let looks = sought.looks(none.own())?;
-        let mut integration = Integration::new(proposal(&looks)?, seed);
-        let marginal = Marginal { sought, looks };
-        integration.go_on(&marginal)?;
-        Ok(Self { marginal, integration })
-    }
-
-    fn force(&self, none: &Fit) -> Result<FreeForce> {
-        let Sought { extent, axis, .. } = self.marginal.sought;
-        let found = self.integration.concluded()?;
-        let factor = found.log_evidence - none.log_evidence;
-        Ok(FreeForce::new(extent, axis, factor, &found))
-    }
+        .collect::<Result<Vec<(Marginal<'_, '_>, Learned)>>>()?;
+    let logs = learned.iter().map(|(_, learned)| learned.log);
+    let best = logs.fold(f64::NEG_INFINITY, f64::max);
+    learned
+        .par_iter()
+        .zip(axes)
+        .enumerate()
+        .map(|(i, ((marginal, learned), axis))| {
+            let far = learned.log < best - FAR;
+            let effort = if far { FEW } else { EFFORT };
+            let seed = seed.child(i as u64);
+            let found = integrated(marginal, learned, effort, seed.child(1))?;
+            Ok(FreeForce::new(extent, *axis, none, &found, seed.child(2)))
+        })
+        .collect()
 }
 
 impl FreeForce {
@@ -204,16 +183,18 @@ impl FreeForce {
     fn new(
         extent: &Extent,
         axis: Axis,
-        log_bayes_factor: f64,
-        found: &Integral,
+        none: &Fit,
+        found: &Integral<Vec<Vec<f64>>>,
+        seed: Seed,
     ) -> Self {
         let range = range(extent, axis);
         let cell = range.span / CELLS as f64;
         let at = (0..CELLS).map(|i| range.begin + (i as f64 + 0.5) * cell);
-        let each = found.draws.iter();
+        let chosen = found.draws(seed);
+        let each = chosen.iter();
         let own = |z: &[f64], n: usize| vec![z[2..].to_vec(); n];
         let draws: Vec<Vec<f64>> =
-            each.clone().flat_map(|(_, forces)| forces.clone()).collect();
+            each.clone().flat_map(|(_, forces)| (*forces).clone()).collect();
         let (mean, sd) = moments(&draws);
         Self {
             axis,
@@ -222,9 +203,9 @@ impl FreeForce {
             mean,
             sd,
             own: each.clone().flat_map(|(z, f)| own(z, f.len())).collect(),
-            log_bayes_factor,
-            se: found.se,
-            process: middle(found.draws.iter().map(|(z, _)| &z[..])),
+            log_bayes_factor: found.sum.log - none.log_evidence,
+            se: found.sum.se,
+            process: middle(each.map(|(z, _)| *z)),
             draws,
         }
     }

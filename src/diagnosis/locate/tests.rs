@@ -6,6 +6,7 @@ use rand_distr::{Distribution, StandardNormal};
 
 use super::*;
 use crate::diagnosis::evidence::fit::fit;
+use crate::draws::log_sum_exp;
 use crate::error::Outcome;
 use crate::infer::LaplaceMixture;
 use crate::model::{Label, Number, Run};

@@ -13,10 +13,11 @@ use rayon::prelude::*;
 use super::smc::Smc;
 use crate::draws::Draws;
 use crate::error::Result;
+use crate::infer::estimate::concluded;
 use crate::infer::proposal::Mixture;
 use crate::infer::proposal::{Base, Particle, log_target, population};
-use crate::infer::weights::{cut, log_mean_weight, summed};
-use crate::infer::{Backend, Effort, Evidence, Inference, Progress, draws_of};
+use crate::infer::weights::{cut, log_mean_weight};
+use crate::infer::{Backend, Effort, Inference, Progress, draws_of};
 use crate::model::{Density, Point, Posterior};
 use crate::seed::Seed;
 
@@ -116,7 +117,7 @@ impl ImportanceSampling {
             .zip(&densities)
             .map(|(z, density)| base.weighed(z, density))
             .collect();
-        let mut made = Self::conclude(posterior, &found, seed.child(21))?;
+        let mut made = concluded(posterior, &found, seed.child(21))?;
         if let Some(evidence) = &mut made.evidence {
             let seen = error_at(&given, evidence.log, found.len());
             evidence.se = evidence.se.max(seen);
@@ -207,35 +208,6 @@ fn joined(
     let mut rows = given.to_vec();
     rows.extend(found.into_iter().map(|p| p.z));
     (rows, weights)
-}
-
-impl ImportanceSampling {
-    /// Evidence and draws from weighted particles.
-    pub(in crate::infer) fn conclude(
-        posterior: &Posterior<'_>,
-        found: &[Particle],
-        seed: Seed,
-    ) -> Result<Inference> {
-        let sum = summed(found)?;
-        let rows = sum
-            .chosen(seed)
-            .par_iter()
-            .map(|&i| posterior.natural(&found[i].z))
-            .collect::<Result<Vec<_>>>()?
-            .concat();
-        let mut draws = draws_of(posterior)?;
-        draws.push_chain(rows, None)?;
-        Ok(Inference {
-            draws: Some(draws),
-            evidence: Some(Evidence {
-                log: sum.log,
-                se: sum.se,
-                method: "importance sampling by a Student-t mixture".into(),
-            }),
-            warnings: sum.warnings,
-            ..Inference::default()
-        })
-    }
 }
 
 #[cfg(test)]

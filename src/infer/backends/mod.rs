@@ -2,7 +2,7 @@
 
 mod bridge;
 mod importance;
-pub(in crate::infer) mod laplace_mixture;
+pub(super) mod laplace_mixture;
 mod legendre;
 mod map;
 mod memory;
@@ -11,11 +11,11 @@ mod mh;
 mod nuts;
 mod quadrature;
 mod reciprocal;
-mod smc;
+pub(super) mod smc;
 
 pub use bridge::Bridge;
 pub use importance::ImportanceSampling;
-pub use laplace_mixture::{LaplaceMixture, Ridge};
+pub use laplace_mixture::LaplaceMixture;
 pub use map::{Map, Mode};
 pub use mh::{MetropolisHastings, Proposal};
 #[cfg(feature = "nuts")]

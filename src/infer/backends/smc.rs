@@ -420,19 +420,21 @@ fn cholesky_factor(particles: &[Particle]) -> DMatrix<f64> {
 }
 
 impl Smc {
-    /// One passage from a base that is known.
+    /// One passage from a base that is known; and where the particles come to.
     pub(in crate::infer) fn passage_of(
         &self,
         posterior: &Posterior<'_>,
         base: Base,
         seed: Seed,
         progress: &dyn Progress,
-    ) -> Result<Inference> {
+    ) -> Result<(Inference, Vec<Vec<f64>>)> {
         progress.begin("tempering from a fitted mixture", None);
         let mut passage = Passage::new(posterior, self, base, seed.child(0))?;
         passage.run(progress)?;
         let method = "sequential Monte Carlo from a fitted mixture";
-        conclude(posterior, &passage, method, seed.child(1))
+        let found = conclude(posterior, &passage, method, seed.child(1))?;
+        let places = passage.places().map(<[f64]>::to_vec).collect();
+        Ok((found, places))
     }
 }
 

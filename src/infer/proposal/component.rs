@@ -1,19 +1,20 @@
-//! Normal approximations of parts of a posterior, of which mixtures are made.
+//! Normal approximations of a posterior about its modes and along its ridges,
+//! of which mixtures are made.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::infer::climb::Peak;
 
-/// A normal approximation of a part of the posterior.
+/// A normal approximation of the posterior about a place.
 #[derive(Debug, Clone)]
-pub(in crate::infer) struct Part {
+pub(in crate::infer) struct Component {
     /// About what it holds, in ln and up to a constant of the posterior.
     pub(in crate::infer) log: f64,
     pub(in crate::infer) mean: DVector<f64>,
     pub(in crate::infer) covariance: DMatrix<f64>,
 }
 
-impl Part {
+impl Component {
     fn new(peak: &Peak, precision: DMatrix<f64>) -> Option<Self> {
         let factor = precision.cholesky()?;
         let log_det: f64 = factor.l_dirty().diagonal().map(f64::ln).sum();

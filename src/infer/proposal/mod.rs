@@ -4,9 +4,10 @@ mod component;
 mod mixture;
 mod particle;
 
-pub(super) use component::Part;
+pub(super) use component::Component;
 pub use mixture::Mixture;
 pub(crate) use mixture::student_constant;
+pub(crate) use particle::Particle;
 pub(super) use particle::{
-    Base, PRIOR_SHARE, Particle, blended, log_target, population,
+    Base, PRIOR_SHARE, blended, log_target, population,
 };

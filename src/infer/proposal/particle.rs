@@ -87,8 +87,8 @@ pub(in crate::infer) fn log_target(density: &Density) -> f64 {
 
 /// A place with its log densities under base and posterior.
 #[derive(Debug, Clone)]
-pub(in crate::infer) struct Particle {
-    pub(in crate::infer) z: Vec<f64>,
+pub(crate) struct Particle {
+    pub(crate) z: Vec<f64>,
     pub(in crate::infer) base: f64,
     target: f64,
 }
@@ -112,11 +112,6 @@ impl Particle {
         } else {
             self.target - self.base
         }
-    }
-
-    /// The same with other coordinates, and so much more in ln to its density.
-    pub(in crate::infer) fn completed(self, z: Vec<f64>, more: f64) -> Self {
-        Self { z, target: self.target + more, ..self }
     }
 
     /// ln of the posterior's density, up to its constant.

@@ -10,6 +10,8 @@ use crate::infer::climb::{Peak, climb_holding};
 use crate::infer::log_sum_exp;
 use crate::infer::proposal::Mixture;
 use crate::infer::proposal::{PRIOR_SHARE, blended, log_target};
+use crate::infer::schedule::Schedule;
+use crate::infer::search::SearchSpace;
 use crate::infer::start::drawn;
 use crate::infer::weights::systematic;
 use crate::model::{Point, Posterior, Slice};
@@ -21,6 +23,8 @@ const INNER: usize = 40;
 /// there, and the effective share at which its mixture is good enough.
 const STARTS: usize = 4;
 const SHARP: f64 = 0.3;
+/// The most steps to where a group is best at given common coordinates.
+const FEW: usize = 5;
 
 /// A group, its coordinates parted into common and own ones.
 pub(super) struct Inner<'a> {
@@ -55,7 +59,7 @@ impl<'a> Inner<'a> {
     /// where nothing near it has a density.
     pub(super) fn shape(
         &self,
-        peaks: &LaplaceMixture,
+        laplace: &LaplaceMixture,
         places: &[&DVector<f64>],
         seed: Seed,
     ) -> Result<Option<Shape>> {
@@ -71,10 +75,14 @@ impl<'a> Inner<'a> {
         let own = |at: &Vec<f64>| self.own.iter().map(|&i| at[i]).collect();
         let mut from: Vec<Vec<f64>> = all.iter().map(own).collect();
         from.push(mode.as_slice().to_vec());
-        let ridges = Vec::new();
-        let draws = peaks.draws;
-        let search = LaplaceMixture { starts: STARTS, from, ridges, draws };
-        let mixture = search.settled(&posterior, SHARP, seed)?.mixture;
+        let space = SearchSpace {
+            prior_starts: STARTS,
+            starts: from,
+            grids: Vec::new(),
+        };
+        let schedule = Schedule { good_share: SHARP, ..laplace.schedule };
+        let search = LaplaceMixture { space, schedule };
+        let mixture = search.freeze(&posterior, seed)?.mixture;
         Ok(Some(Shape { mode, mixture }))
     }
 
@@ -89,7 +97,7 @@ impl<'a> Inner<'a> {
 
     /// The best place near one, with the same common coordinates.
     fn climbed(&self, at: &[f64]) -> Result<Option<Peak>> {
-        climb_holding(self.group.posterior, at, &self.held)
+        climb_holding(self.group.posterior, at, &self.held, FEW)
     }
 
     /// About the own coordinates, given those in common: what they look like

@@ -1,9 +1,9 @@
-//! Where a mechanism may hold something: the ridges that climbs keep to.
+//! Places along a mechanism's coordinates, at which a search holds them.
 
 use std::ops::Range;
 
 use crate::diagnosis::evidence::fit::{on_line, spread};
-use crate::infer::Ridge;
+use crate::infer::{HeldGrid, HeldPlace};
 use crate::mechanism::{Mechanism, Unknown};
 use crate::prior::AnyPrior;
 use crate::seed::Seed;
@@ -38,12 +38,12 @@ const APART: f64 = 1.5;
 /// The coordinates of a mechanism along which the data may tell little, with
 /// even places along them, for each of its amplitudes; all other coordinates
 /// begin at `before` and `after`.
-pub(crate) fn ridges(
+pub(crate) fn even_grids(
     mechanism: &dyn Mechanism,
     before: &[f64],
     after: &[f64],
     seed: Seed,
-) -> Vec<Ridge> {
+) -> Vec<HeldGrid> {
     let unknowns = mechanism.unknowns();
     let one = |along: Range<usize>| {
         let others = Others::of(&unknowns, &along, before, after);
@@ -53,11 +53,12 @@ pub(crate) fn ridges(
 }
 
 /// Places along the run where an edge of a confined mechanism may be, for each
-/// of its amplitudes; the model's own coordinates begin at `own`.
-pub(crate) fn narrow_ridges(
+/// of its amplitudes; all other coordinates begin at `before` and `after`.
+pub(crate) fn edge_grids(
     mechanism: &dyn Mechanism,
-    own: &[f64],
-) -> Vec<Ridge> {
+    before: &[f64],
+    after: &[f64],
+) -> Vec<HeldGrid> {
     let unknowns = mechanism.unknowns();
     let middle = |u: &Unknown| u.prior.quantile(0.5).unwrap_or(0.0);
     let middles: Vec<f64> = unknowns.iter().map(middle).collect();
@@ -65,7 +66,7 @@ pub(crate) fn narrow_ridges(
         return Vec::new();
     }
     let one = |along: Range<usize>| {
-        let others = Others::of(&unknowns, &along, &[], own);
+        let others = Others::of(&unknowns, &along, before, after);
         narrow(&unknowns[along], &others)
     };
     mechanism.amplitudes().into_iter().filter_map(one).collect()
@@ -103,7 +104,7 @@ impl Others {
 ///
 /// An amplitude that may have either sign follows from where its stretch is,
 /// nearly as in linear regression: there it is not among them.
-fn even(along: &[Unknown], others: &Others, seed: Seed) -> Ridge {
+fn even(along: &[Unknown], others: &Others, seed: Seed) -> HeldGrid {
     let free = usize::from(along.len() > 1 && is_signed(&along[0]));
     let first = others.before.len();
     let held = (first + free..first + along.len()).collect();
@@ -112,10 +113,11 @@ fn even(along: &[Unknown], others: &Others, seed: Seed) -> Ridge {
     let places = spread(kept, places(kept.len()), seed)
         .into_iter()
         .map(|(place, apart)| {
-            (others.with(&[&amplitude[..], &place].concat()), apart)
+            let line = others.with(&[&amplitude[..], &place].concat());
+            HeldPlace { line, spacing: apart }
         })
         .collect();
-    Ridge { held, places, narrow: false }
+    HeldGrid { held, places }
 }
 
 fn is_signed(amplitude: &Unknown) -> bool {
@@ -127,7 +129,7 @@ fn is_signed(amplitude: &Unknown) -> bool {
 /// A value that lies off is explained by a jolt just before it, and a change
 /// at some moment by a stretch that begins, or ends, with the run: peaks as
 /// narrow as values are apart, at which even places arrive by chance.
-fn narrow(along: &[Unknown], others: &Others) -> Option<Ridge> {
+fn narrow(along: &[Unknown], others: &Others) -> Option<HeldGrid> {
     let (amplitude, places) = along.split_first()?;
     let sites = match places {
         [edge] => edges(edge)?,
@@ -140,13 +142,14 @@ fn narrow(along: &[Unknown], others: &Others) -> Option<Ridge> {
         .flat_map(|(place, apart)| {
             sizes.iter().map(move |p| {
                 let size = [on_line(&amplitude.prior, *p)];
-                (others.with(&[&size[..], place].concat()), apart.clone())
+                let line = others.with(&[&size[..], place].concat());
+                HeldPlace { line, spacing: apart.clone() }
             })
         })
         .collect();
     let first = others.before.len() + 1;
     let held = (first..first + along.len() - 1).collect();
-    Some(Ridge { held, places, narrow: true })
+    Some(HeldGrid { held, places })
 }
 
 /// A place on the line with how far the next ones lie, in each coordinate.

@@ -6,7 +6,7 @@ use super::Group;
 use super::inner::{Inner, Shape};
 use crate::error::Result;
 use crate::infer::backends::laplace_mixture::LaplaceMixture;
-use crate::infer::proposal::Part;
+use crate::infer::proposal::Component;
 use crate::seed::Seed;
 
 /// At how many places of the common coordinates the groups are looked at
@@ -31,7 +31,7 @@ pub(super) struct Region {
 
 impl Region {
     /// About a part, without shapes.
-    fn new(part: &Part, common: &[usize]) -> Option<Self> {
+    fn new(part: &Component, common: &[usize]) -> Option<Self> {
         let marginal = part.marginal(common);
         let precision = marginal.covariance.cholesky()?.inverse();
         let gain = part.covariance.select_columns(common) * &precision;
@@ -56,7 +56,7 @@ impl LaplaceMixture {
     /// each with what the groups look like there.
     pub(super) fn regions(
         &self,
-        parts: &[Part],
+        parts: &[Component],
         common: &Group<'_>,
         inner: &[Inner<'_>],
         seed: Seed,
@@ -78,7 +78,7 @@ impl LaplaceMixture {
 type Around<'p> = (Region, Vec<&'p DVector<f64>>);
 
 /// Regions around the parts that hold most, without shapes.
-fn around<'p>(parts: &'p [Part], common: &[usize]) -> Vec<Around<'p>> {
+fn around<'p>(parts: &'p [Component], common: &[usize]) -> Vec<Around<'p>> {
     let mut regions: Vec<Around<'p>> = Vec::new();
     for part in parts {
         let Some(region) = Region::new(part, common) else { continue };

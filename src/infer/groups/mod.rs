@@ -23,19 +23,20 @@ mod region;
 
 use nalgebra::DVector;
 use rand::seq::SliceRandom;
-use rayon::prelude::*;
 
-use super::backends::ImportanceSampling;
-use super::backends::laplace_mixture::{
-    AMPLE, ENOUGH, LaplaceMixture, ROUNDS, Ridge, is_good, mixture, taught,
-};
-use super::proposal::Part;
-use super::proposal::{Base, Particle, population};
+use super::adapt::adapted;
+use super::backends::laplace_mixture::{LaplaceMixture, mixture};
+use super::estimate::{Precision, estimated};
+use super::nested::{Effort, Held, Outer, integrated, learn};
+use super::proposal::Component;
+use super::schedule::Schedule;
+use super::search::{HeldGrid, HeldPlace, SearchSpace, components};
+use super::weights::Sum;
 use super::{Backend, Evidence, Inference, Progress, draws_of};
 use crate::draws::Draws;
 use crate::error::{Error, Result};
-use crate::model::Posterior;
-use crate::seed::{Rng, Seed};
+use crate::model::{Point, Posterior};
+use crate::seed::Seed;
 
 use assembly::Assembly;
 use inner::Inner;
@@ -62,9 +63,14 @@ pub struct Grouped<'a> {
     pub groups: Vec<Group<'a>>,
 }
 
-/// One in so many draws of a round is made of what is in common: each costs a
-/// climb and dozens of draws in every group.
-const OUTER: usize = 2;
+/// How many draws of what is in common are made: each costs a climb and dozens
+/// of draws in every group.
+const EFFORT: Effort =
+    Effort { learning: 200, rounds: 6, last: (300, 1200), error: 0.06 };
+
+/// The effective share at which a proposal for all coordinates at once does:
+/// nested, a draw costs dozens of times as much.
+const JOINT: f64 = 0.25;
 
 /// How the evidence of groups with something in common is found.
 const NESTED: &str = "importance sampling of what is in common, and of each \
@@ -103,7 +109,11 @@ impl LaplaceMixture {
             .enumerate()
             .map(|(i, group)| {
                 let seed = seed.child(i as u64);
-                self.within(group).explore(group.posterior, seed, progress)
+                self.within_group(group).explore(
+                    group.posterior,
+                    seed,
+                    progress,
+                )
             })
             .collect::<Result<Vec<_>>>()?;
         let mut draws = draws_of(grouped.whole)?;
@@ -128,23 +138,27 @@ impl LaplaceMixture {
         })
     }
 
-    /// The same search within a group: starts and ridges where they cross it.
-    fn within(&self, group: &Group<'_>) -> Self {
+    /// The same search within a group: starts and grids where they cross it.
+    fn within_group(&self, group: &Group<'_>) -> Self {
         let crossing = |line: &Vec<f64>| -> Vec<f64> {
             group.places.iter().map(|&i| line[i]).collect()
         };
-        let mut from: Vec<Vec<f64>> = self.from.iter().map(crossing).collect();
-        from.dedup();
-        let ridges = self.ridges.iter().filter_map(|ridge| {
+        let space = &self.space;
+        let mut starts: Vec<Vec<f64>> =
+            space.starts.iter().map(crossing).collect();
+        starts.dedup();
+        let grids = space.grids.iter().filter_map(|grid| {
             let place = |held| group.places.iter().position(|p| p == held);
-            let held = ridge.held.iter().map(place).collect::<Option<_>>()?;
-            let places = ridge.places.iter();
-            let places =
-                places.map(|(at, apart)| (crossing(at), apart.clone()));
-            let (places, narrow) = (places.collect(), ridge.narrow);
-            Some(Ridge { held, places, narrow })
+            let held = grid.held.iter().map(place).collect::<Option<_>>()?;
+            let places = grid.places.iter().map(|place| HeldPlace {
+                line: crossing(&place.line),
+                spacing: place.spacing.clone(),
+            });
+            Some(HeldGrid { held, places: places.collect() })
         });
-        Self { from, ridges: ridges.collect(), ..self.clone() }
+        let grids = grids.collect();
+        let space = SearchSpace { starts, grids, ..*space };
+        Self { space, schedule: self.schedule }
     }
 
     /// Groups with something in common: a proposal for all coordinates at
@@ -159,14 +173,13 @@ impl LaplaceMixture {
         progress.begin("importance sampling", None);
         let assembly = Assembly::new(grouped, common);
         let whole = Posterior::new(&assembly)?;
-        let parts = self.parts(&whole, seed.child(0))?;
-        let joint = self.settled_from(&whole, &parts, AMPLE, seed.child(2))?;
-        if let Some((found, seed)) = joint.found {
-            let whole = grouped.whole;
-            let made = ImportanceSampling::conclude(whole, &found, seed)?;
-            if made.warnings.is_empty() {
-                return Ok(made);
-            }
+        let schedule = Schedule { good_share: JOINT, ..self.schedule };
+        let parts = components(&whole, &self.space, &schedule, seed.child(0))?;
+        let proposal = mixture(&parts)?;
+        let joint = adapted(&whole, proposal, &schedule, seed.child(2))?;
+        if joint.good {
+            let (whole, sharp) = (grouped.whole, Precision::Sharp);
+            return estimated(whole, &joint, &schedule, sharp, seed.child(3));
         }
         self.nested(grouped, common, &parts, seed.child(1), progress)
     }
@@ -176,45 +189,77 @@ impl LaplaceMixture {
         &self,
         grouped: &Grouped<'_>,
         common: &Group<'_>,
-        parts: &[Part],
+        parts: &[Component],
         seed: Seed,
         progress: &dyn Progress,
     ) -> Result<Inference> {
-        let marginals: Vec<Part> =
+        let marginals: Vec<Component> =
             parts.iter().map(|part| part.marginal(&common.places)).collect();
-        let mut mixture = mixture(&marginals)?;
         let inner = Inner::all(grouped, common);
         let regions = self.regions(parts, common, &inner, seed.child(0))?;
-        let mut round = 0;
-        loop {
-            round += 1;
-            let seed = seed.child(round);
-            let base = Base::Mixture(mixture.clone());
-            let count = (self.draws / OUTER).max(10);
-            let drawn =
-                population(common.posterior, &base, count, seed.child(0))?;
-            let (found, wholes): (Vec<_>, Vec<_>) = drawn
-                .into_par_iter()
-                .enumerate()
-                .map(|(i, theta)| {
-                    let mut rng = seed.child(1).child(i as u64).rng();
-                    completed(theta, common, &inner, &regions, &mut rng)
-                })
-                .collect::<Result<Vec<(Particle, Particle)>>>()?
-                .into_iter()
-                .unzip();
-            progress.advance(count as u64);
-            if round == ROUNDS || is_good(&found, ENOUGH) {
-                let (whole, seed) = (grouped.whole, seed.child(2));
-                let mut made =
-                    ImportanceSampling::conclude(whole, &wholes, seed)?;
-                if let Some(evidence) = &mut made.evidence {
-                    evidence.method = NESTED.to_owned();
-                }
-                return Ok(made);
-            }
-            mixture = taught(&mixture, &found, round - 1, seed.child(3));
+        let outer = Given { common, inner, regions };
+        let proposal = mixture(&marginals)?;
+        let learned = learn(&outer, proposal, EFFORT, seed.child(1))?;
+        progress.advance(EFFORT.learning as u64);
+        let found = integrated(&outer, &learned, EFFORT, seed.child(2))?;
+        let rows = found
+            .draws(seed.child(3))
+            .into_iter()
+            .map(|(_, line)| grouped.whole.natural(line))
+            .collect::<Result<Vec<_>>>()?;
+        let mut draws = draws_of(grouped.whole)?;
+        draws.push_chain(rows.concat(), None)?;
+        let Sum { log, se, warnings, .. } = found.sum;
+        let method = NESTED.to_owned();
+        Ok(Inference {
+            draws: Some(draws),
+            evidence: Some(Evidence { log, se, method }),
+            warnings,
+            ..Inference::default()
+        })
+    }
+}
+
+/// Groups that are independent given what is in common.
+struct Given<'a> {
+    common: &'a Group<'a>,
+    inner: Vec<Inner<'a>>,
+    regions: Vec<Region>,
+}
+
+impl Outer for Given<'_> {
+    /// All coordinates.
+    type Rest = Vec<f64>;
+
+    fn prior(&self) -> Option<&Posterior<'_>> {
+        Some(self.common.posterior)
+    }
+
+    /// What all groups hold, with a draw of all coordinates.
+    fn held(&self, z: &[f64], seed: Seed) -> Result<Held<Vec<f64>>> {
+        let place = DVector::from_column_slice(z);
+        let near = |a: &&Region, b: &&Region| {
+            a.distance(&place).total_cmp(&b.distance(&place))
+        };
+        let Some(region) = self.regions.iter().min_by(near) else {
+            return Err(Error::inference("no start leads to a peak"));
+        };
+        let mut line = region.reached(&place).as_slice().to_vec();
+        for (&i, z) in self.common.places.iter().zip(z) {
+            line[i] = *z;
         }
+        let density = self.common.posterior.density(Point::Line(z))?;
+        let prior = density.on_line();
+        let mut rng = seed.rng();
+        let mut held = 0.0;
+        for (group, shape) in self.inner.iter().zip(&region.shapes) {
+            if prior + held == f64::NEG_INFINITY {
+                return Ok(Held::nothing());
+            }
+            let shape = shape.as_ref();
+            held += group.estimate(&mut line, shape, prior, &mut rng)?;
+        }
+        Ok(Held { log: prior + held, rest: Some(line) })
     }
 }
 
@@ -234,37 +279,6 @@ fn joined(grouped: &Grouped<'_>, found: &[Inference], seed: Seed) -> Vec<f64> {
         }
     }
     all.concat()
-}
-
-/// A draw of the common coordinates with what all groups hold there, and the
-/// same with a draw of all coordinates.
-fn completed(
-    theta: Particle,
-    common: &Group<'_>,
-    inner: &[Inner<'_>],
-    regions: &[Region],
-    rng: &mut Rng,
-) -> Result<(Particle, Particle)> {
-    let place = DVector::from_column_slice(&theta.z);
-    let near = |a: &&Region, b: &&Region| {
-        a.distance(&place).total_cmp(&b.distance(&place))
-    };
-    let Some(region) = regions.iter().min_by(near) else {
-        return Err(Error::inference("no start leads to a peak"));
-    };
-    let mut line = region.reached(&place).as_slice().to_vec();
-    for (&i, z) in common.places.iter().zip(&theta.z) {
-        line[i] = *z;
-    }
-    let prior = theta.log_target();
-    let mut held = 0.0;
-    for (group, shape) in inner.iter().zip(&region.shapes) {
-        if prior + held > f64::NEG_INFINITY {
-            held += group.estimate(&mut line, shape.as_ref(), prior, rng)?;
-        }
-    }
-    let z = theta.z.clone();
-    Ok((theta.clone().completed(z, held), theta.completed(line, held)))
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Walks away from a peak: where a posterior is not as its peak looks.
+//! Profiles along coordinates: where a posterior is not as its peak looks.
 //!
 //! A normal approximation knows a peak's curvature and no more. A tail that is
 //! bent, one-sided, or flat beyond some place, as that of a patch whose
@@ -6,48 +6,54 @@
 //! none of its draws go there; importance weights cannot tell of places that
 //! they have never seen. The profile along every coordinate does: strides
 //! along it, with all other coordinates at their best, show where the
-//! posterior lies above the approximation, and each such place becomes a part
-//! (profiles as a check of normality: Bates, Watts 1988, chapter 6).
+//! posterior lies above the approximation, and each such place becomes a
+//! component (profiles as a check of normality: Bates, Watts 1988, chapter 6).
 
 use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::climb::{Peak, climb_holding};
-use super::proposal::Part;
+use super::proposal::Component;
 use crate::error::Result;
 use crate::model::Posterior;
 
-/// How many of the highest peaks are walked away from.
-const WALKED: usize = 3;
+/// Of how many peaks profiles are made at the most, and how far below the
+/// highest they may be, in ln.
+const PEAKS: usize = 3;
+const BELOW: f64 = 4.0;
 /// A stride, in widths of the peak.
-const STRIDE: f64 = 1.2;
-/// How far down a walk goes, in ln.
-const DOWN: f64 = 7.0;
-/// The most strides of a walk.
-const STRIDES: usize = 12;
-/// How much above the normal approximation, in ln, a place becomes a part.
+const STRIDE: f64 = 1.4;
+/// How far down a profile goes, in ln.
+const DOWN: f64 = 6.0;
+/// The most strides, and the most steps of a climb after each.
+const STRIDES: usize = 10;
+const FEW: usize = 4;
+/// How much above the normal approximation, in ln, a place becomes a
+/// component.
 const ABOVE: f64 = 0.4;
 
-/// The parts met on walks from the highest of some peaks, along all
+/// The components met on profiles from the highest peaks, along all
 /// coordinates both ways.
 ///
 /// # Errors
 /// What no other parameter values would mend.
-pub(super) fn walks(
+pub(super) fn profiles(
     posterior: &Posterior<'_>,
     peaks: &[Peak],
-) -> Result<Vec<Part>> {
-    let walked = peaks.iter().take(WALKED);
-    let walks: Vec<Walk<'_>> = walked.flat_map(Walk::all).collect();
-    let met = walks
+) -> Result<Vec<Component>> {
+    let best = peaks.first().map_or(0.0, |peak| peak.height);
+    let high = peaks.iter().filter(|peak| best - peak.height < BELOW);
+    let all: Vec<Profile<'_>> =
+        high.take(PEAKS).flat_map(Profile::all).collect();
+    let met = all
         .into_par_iter()
-        .map(|walk| walk.go(posterior))
+        .map(|profile| profile.components(posterior))
         .collect::<Result<Vec<_>>>()?;
     Ok(met.concat())
 }
 
-/// A way from a peak, along one coordinate.
-struct Walk<'a> {
+/// One side of a profile.
+struct Profile<'a> {
     peak: &'a Peak,
     along: usize,
     /// The peak's width along it.
@@ -56,7 +62,7 @@ struct Walk<'a> {
     stride: DVector<f64>,
 }
 
-impl<'a> Walk<'a> {
+impl<'a> Profile<'a> {
     /// Those along every coordinate, up and down.
     fn all(peak: &'a Peak) -> Vec<Self> {
         let Some(factor) = peak.precision.clone().cholesky() else {
@@ -72,29 +78,27 @@ impl<'a> Walk<'a> {
         .collect()
     }
 
-    /// Walks as far as the profile stays high, each stride begun in the
+    /// Goes on as long as the profile stays high, each stride begun in the
     /// direction of the last.
-    fn go(self, posterior: &Posterior<'_>) -> Result<Vec<Part>> {
+    fn components(self, posterior: &Posterior<'_>) -> Result<Vec<Component>> {
         let held = [self.along];
-        let apart = [STRIDE * self.width];
+        let spacing = [STRIDE * self.width];
         let (mut at, mut stride) = (self.peak.line.clone(), self.stride);
-        let mut parts = Vec::new();
+        let mut met = Vec::new();
         for count in 1..=STRIDES {
             let start = &at + &stride;
-            let found = climb_holding(posterior, start.as_slice(), &held)?;
-            let Some(found) =
-                found.filter(|f| f.height > self.peak.height - DOWN)
-            else {
-                break;
-            };
+            let found =
+                climb_holding(posterior, start.as_slice(), &held, FEW)?;
+            let high = |f: &Peak| f.height > self.peak.height - DOWN;
+            let Some(found) = found.filter(high) else { break };
             let widths = count as f64 * STRIDE;
             let normal = self.peak.height - 0.5 * widths * widths;
             if found.height > normal + ABOVE {
-                parts.extend(Part::of_place(&found, &held, &apart));
+                met.extend(Component::of_place(&found, &held, &spacing));
             }
             stride = &found.line - &at;
             at = found.line;
         }
-        Ok(parts)
+        Ok(met)
     }
 }

@@ -1,0 +1,179 @@
+//! The evidence over a few coordinates, the others integrated at each draw of
+//! these.
+//!
+//! Where a posterior is nearly normal in most of its coordinates once a few
+//! others are known, a mixture in all of them does badly and one in the few
+//! does well: each draw of these is weighed by an unbiased estimate of what
+//! the others hold there, which leaves the evidence unbiased (Tran, Scharth,
+//! Pitt, Kohn 2013). The mixture learns from rounds of draws, is frozen, and
+//! fresh draws make the estimate, as with the Laplace mixture.
+
+use rayon::prelude::*;
+
+use super::adapt::taught;
+use super::proposal::{Base, Mixture, Particle};
+use super::schedule::Schedule;
+use super::weights::{Sum, log_mean_weight, quality, summed};
+use crate::error::Result;
+use crate::model::Posterior;
+use crate::seed::{Rng, Seed};
+
+/// A posterior of which a few coordinates are drawn, the outer ones.
+pub(crate) trait Outer: Sync {
+    /// A draw of the others.
+    type Rest: Send;
+
+    /// ln of an unbiased estimate of what the others hold at given outer
+    /// coordinates, the prior of these included, with draws of the others;
+    /// none where nothing is held.
+    fn held(&self, z: &[f64], seed: Seed) -> Result<Held<Self::Rest>>;
+
+    /// The prior of the outer coordinates, where a share of the draws is to be
+    /// made of it, so that no place is out of reach.
+    fn prior(&self) -> Option<&Posterior<'_>> {
+        None
+    }
+}
+
+/// What the other coordinates hold at given ones.
+#[derive(Debug, Clone)]
+pub(crate) struct Held<R> {
+    pub(crate) log: f64,
+    pub(crate) rest: Option<R>,
+}
+
+impl<R> Held<R> {
+    /// What a place holds that has no density.
+    pub(crate) fn nothing() -> Self {
+        Self { log: f64::NEG_INFINITY, rest: None }
+    }
+}
+
+/// How many draws of the outer coordinates are made.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Effort {
+    /// In a round of learning.
+    pub(crate) learning: usize,
+    /// The most rounds of learning.
+    pub(crate) rounds: u64,
+    /// For the estimate: the fewest and the most, and the standard error of
+    /// ln evidence that they are made for.
+    pub(crate) last: (usize, usize),
+    pub(crate) error: f64,
+}
+
+/// A frozen proposal of the outer coordinates.
+#[derive(Debug, Clone)]
+pub(crate) struct Learned {
+    mixture: Mixture,
+    /// About ln of the evidence.
+    pub(crate) log: f64,
+    /// The effective share of the last draws.
+    share: f64,
+}
+
+/// Fresh draws of the outer coordinates, each with one of the others.
+pub(crate) struct Integral<R> {
+    pub(crate) sum: Sum,
+    pub(crate) found: Vec<(Particle, Option<R>)>,
+}
+
+impl<R> Integral<R> {
+    /// As many even draws as the weights are worth, and a hundred at least.
+    pub(crate) fn draws(&self, seed: Seed) -> Vec<(&[f64], &R)> {
+        let chosen = self.sum.chosen(seed).into_iter();
+        let whole = chosen.filter_map(|i| {
+            let (particle, rest) = &self.found[i];
+            rest.as_ref().map(|rest| (&particle.z[..], rest))
+        });
+        whole.collect()
+    }
+}
+
+/// Teaches a mixture of the outer coordinates where they lie.
+///
+/// # Errors
+/// What no other parameter values would mend.
+pub(crate) fn learn<O: Outer>(
+    outer: &O,
+    mut mixture: Mixture,
+    effort: Effort,
+    seed: Seed,
+) -> Result<Learned> {
+    let schedule = Schedule::default();
+    let (mut log, mut share) = (f64::NEG_INFINITY, 0.0);
+    for round in 0..effort.rounds {
+        let seed = seed.child(round);
+        let found = drawn(outer, &mixture, effort.learning, seed.child(0))?;
+        let found: Vec<Particle> = found.into_iter().map(|f| f.0).collect();
+        let (is, tail) = quality(&found);
+        (log, share) = (log_mean_weight(&found), is);
+        if share > GOOD && tail < 1.0 {
+            break;
+        }
+        mixture = taught(&mixture, &found, round, &schedule, seed.child(1));
+    }
+    Ok(Learned { mixture, log, share })
+}
+
+/// An effective share that needs no further round: each draw costs dozens of
+/// simulations, and one round of reweighting gains most.
+const GOOD: f64 = 0.25;
+
+/// The evidence from fresh draws.
+///
+/// # Errors
+/// No draw with a positive density, or a model that fails.
+pub(crate) fn integrated<O: Outer>(
+    outer: &O,
+    learned: &Learned,
+    effort: Effort,
+    seed: Seed,
+) -> Result<Integral<O::Rest>> {
+    let (fewest, most) = effort.last;
+    let excess = 1.0 / learned.share.max(1e-6) - 1.0;
+    let needed = (excess / effort.error.powi(2)) as usize;
+    let count = needed.clamp(fewest, most);
+    let found = drawn(outer, &learned.mixture, count, seed)?;
+    let particles: Vec<Particle> = found.iter().map(|f| f.0.clone()).collect();
+    Ok(Integral { sum: summed(&particles)?, found })
+}
+
+/// Draws of the outer coordinates, each with what the others hold there.
+fn drawn<O: Outer>(
+    outer: &O,
+    mixture: &Mixture,
+    count: usize,
+    seed: Seed,
+) -> Result<Vec<(Particle, Option<O::Rest>)>> {
+    (0..count)
+        .into_par_iter()
+        .map(|i| {
+            let seed = seed.child(i as u64);
+            let mut rng = seed.child(0).rng();
+            let Some((z, base)) = proposed(outer, mixture, &mut rng)? else {
+                return Ok((Particle::without_density(0), None));
+            };
+            let held = outer.held(&z, seed.child(1))?;
+            Ok((Particle::new(z, base, held.log), held.rest))
+        })
+        .collect()
+}
+
+/// A draw of the outer coordinates with ln of the proposal's density; `None`
+/// for one of the prior that is cut short.
+fn proposed<O: Outer>(
+    outer: &O,
+    mixture: &Mixture,
+    rng: &mut Rng,
+) -> Result<Option<(Vec<f64>, f64)>> {
+    let Some(prior) = outer.prior() else {
+        let z = mixture.draw(rng);
+        let base = mixture.log_density(&z);
+        return Ok(Some((z, base)));
+    };
+    let base = Base::Mixture(mixture.clone());
+    let particle = base.draw(prior, rng)?;
+    let whole = particle.log_target() > f64::NEG_INFINITY;
+    Ok(whole.then_some((particle.z, particle.base)))
+}

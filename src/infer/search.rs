@@ -1,0 +1,245 @@
+//! Searching a posterior for where it lies: the first of the five steps of the
+//! Laplace mixture.
+//!
+//! Climbs start from given places and from likely draws of the prior. Along
+//! coordinates that may have many modes, or none, places are held: one damped
+//! step of all other coordinates says what each promises, first from where the
+//! place says that they begin, then from the best peak found, where the errors
+//! may be much smaller. The promising ones are climbed further, and the best of
+//! those with all coordinates. Profiles along every coordinate tell where the
+//! highest peaks are not as their curvature says.
+
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+use super::climb::{Held, Peak, climb_holding, climb_unless};
+use super::profile::profiles;
+use super::proposal::Component;
+use super::schedule::Schedule;
+use super::start::likely;
+use crate::error::Result;
+use crate::model::{Point, Posterior};
+use crate::seed::Seed;
+
+/// Where to look for modes.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SearchSpace {
+    /// How many climbs start from likely draws of the prior.
+    pub prior_starts: usize,
+    /// Further starts, on the real line.
+    pub starts: Vec<Vec<f64>>,
+    /// Places along coordinates that may have many modes, or none.
+    pub grids: Vec<HeldGrid>,
+}
+
+/// Places along some coordinates, which are held there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeldGrid {
+    /// Which coordinates.
+    pub held: Vec<usize>,
+    /// The places.
+    pub places: Vec<HeldPlace>,
+}
+
+/// A place of a grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeldPlace {
+    /// All coordinates on the real line; those not held begin there.
+    pub line: Vec<f64>,
+    /// How far the next places lie along each held coordinate.
+    pub spacing: Vec<f64>,
+}
+
+/// The most steps of a climb with coordinates held.
+const FEW: usize = 4;
+
+/// The components of a proposal: peaks, held places and profiles that hold
+/// anything, most first.
+///
+/// # Errors
+/// What no other parameter values would mend.
+pub(super) fn components(
+    posterior: &Posterior<'_>,
+    space: &SearchSpace,
+    schedule: &Schedule,
+    seed: Seed,
+) -> Result<Vec<Component>> {
+    let mut search = Search::new(posterior, schedule);
+    search.climb_from_starts(space, seed)?;
+    search.look(space, None)?;
+    if let Some(best) = search.peaks.first().map(|peak| peak.line.clone()) {
+        search.look(space, Some(&best))?;
+    }
+    search.components()
+}
+
+/// About the log evidence, from the normal approximations of the peaks alone.
+///
+/// # Errors
+/// What no other parameter values would mend.
+pub(super) fn outlook(
+    posterior: &Posterior<'_>,
+    space: &SearchSpace,
+    schedule: &Schedule,
+    seed: Seed,
+) -> Result<f64> {
+    let mut search = Search::new(posterior, schedule);
+    search.climb_from_starts(space, seed)?;
+    search.look(space, None)?;
+    let logs = search.peaks.iter().filter_map(Peak::log_evidence);
+    Ok(super::log_sum_exp(logs.collect::<Vec<_>>().into_iter()))
+}
+
+/// A held place with where the other coordinates come to.
+struct Looked<'s> {
+    grid: &'s HeldGrid,
+    place: &'s HeldPlace,
+    peak: Peak,
+}
+
+/// A search under way.
+struct Search<'a, 'm, 's> {
+    posterior: &'a Posterior<'m>,
+    schedule: &'a Schedule,
+    /// The highest first, none twice.
+    peaks: Vec<Peak>,
+    looked: Vec<Looked<'s>>,
+}
+
+impl<'a, 'm, 's> Search<'a, 'm, 's> {
+    fn new(posterior: &'a Posterior<'m>, schedule: &'a Schedule) -> Self {
+        Self { posterior, schedule, peaks: Vec::new(), looked: Vec::new() }
+    }
+
+    fn climb_from_starts(
+        &mut self,
+        space: &SearchSpace,
+        seed: Seed,
+    ) -> Result<()> {
+        let drawn = (0..space.prior_starts)
+            .into_par_iter()
+            .map(|i| likely(self.posterior, seed.child(i as u64)))
+            .collect::<Result<Vec<_>>>()?;
+        let starts = space.starts.iter().cloned();
+        for start in starts.chain(drawn.into_iter().flatten()) {
+            self.climb(&start)?;
+        }
+        Ok(())
+    }
+
+    /// Climbs with all coordinates, unless that leads to a peak that is known.
+    fn climb(&mut self, start: &[f64]) -> Result<()> {
+        let known = |line: &DVector<f64>, height: f64| {
+            self.peaks.iter().any(|peak| {
+                peak.height > height && peak.distance(line) < ALIKE
+            })
+        };
+        let Some(peak) = climb_unless(self.posterior, start, known)? else {
+            return Ok(());
+        };
+        if self.peaks.iter().any(|p| p.distance(&peak.line) < ALIKE) {
+            return Ok(());
+        }
+        let higher = |other: &Peak| other.height > peak.height;
+        let at = self.peaks.partition_point(higher);
+        self.peaks.insert(at, peak);
+        Ok(())
+    }
+
+    /// Looks at every held place, climbs on from the promising ones with the
+    /// place held, and from the best with all coordinates. The others begin
+    /// where the place has them, or at `from`.
+    fn look(
+        &mut self,
+        space: &'s SearchSpace,
+        from: Option<&DVector<f64>>,
+    ) -> Result<()> {
+        let places = space.grids.iter().flat_map(|grid| {
+            grid.places.iter().map(move |place| (grid, place))
+        });
+        let places: Vec<_> = places.collect();
+        let posterior = self.posterior;
+        let found = places
+            .into_par_iter()
+            .map(|(grid, place)| glance(posterior, grid, place, from))
+            .collect::<Result<Vec<_>>>()?;
+        let mut found: Vec<Looked<'s>> = found.into_iter().flatten().collect();
+        by_height(&mut found);
+        let promising = found.iter_mut().take(self.schedule.promising);
+        promising.par_bridge().try_for_each(|one| one.climb_on(posterior))?;
+        by_height(&mut found);
+        let best = found.iter().take(self.schedule.climbed);
+        let best: Vec<_> = best.map(|one| one.peak.line.clone()).collect();
+        for start in best {
+            self.climb(start.as_slice())?;
+        }
+        self.looked.extend(found);
+        Ok(())
+    }
+
+    fn components(self) -> Result<Vec<Component>> {
+        let profiles = profiles(self.posterior, &self.peaks)?;
+        let of_peaks = self.peaks.iter().filter_map(Component::of_peak);
+        let of_places = self.looked.iter().filter_map(|one| {
+            Component::of_place(&one.peak, &one.grid.held, &one.place.spacing)
+        });
+        let mut all: Vec<Component> =
+            of_peaks.chain(of_places).chain(profiles).collect();
+        all.sort_by(|a, b| b.log.total_cmp(&a.log));
+        let best = all.first().map_or(0.0, |component| component.log);
+        all.retain(|one| best - one.log < self.schedule.negligible);
+        all.truncate(self.schedule.components);
+        Ok(all)
+    }
+}
+
+/// Peaks nearer than this many widths, squared, are one.
+const ALIKE: f64 = 1.0;
+
+fn by_height(found: &mut [Looked<'_>]) {
+    found.sort_by(|a, b| b.peak.height.total_cmp(&a.peak.height));
+}
+
+/// Where one damped step leads from a held place; `None` where there is no
+/// density.
+fn glance<'s>(
+    posterior: &Posterior<'_>,
+    grid: &'s HeldGrid,
+    place: &'s HeldPlace,
+    from: Option<&DVector<f64>>,
+) -> Result<Option<Looked<'s>>> {
+    let mut line = DVector::from_column_slice(&place.line);
+    if let Some(from) = from {
+        let mut other = from.clone();
+        grid.held.iter().for_each(|&i| other[i] = line[i]);
+        line = other;
+    }
+    let landscape = Held { posterior, held: &grid.held };
+    let Some(slope) = landscape.slope_at(line.as_slice())? else {
+        return Ok(None);
+    };
+    let mut height = slope.height;
+    if let Some(step) = slope.step(&grid.held, DAMPING, LONGEST) {
+        let next = &line + step;
+        let density = posterior.density(Point::Line(next.as_slice()))?;
+        if density.on_line() > height {
+            (line, height) = (next, density.on_line());
+        }
+    }
+    let peak = Peak { line, height, precision: slope.precision };
+    Ok(Some(Looked { grid, place, peak }))
+}
+
+/// The damping of that step, and how long it is at the most along any axis.
+const DAMPING: f64 = 1e-2;
+const LONGEST: f64 = 3.0;
+
+impl Looked<'_> {
+    fn climb_on(&mut self, posterior: &Posterior<'_>) -> Result<()> {
+        let (line, held) = (self.peak.line.as_slice(), &self.grid.held[..]);
+        if let Some(peak) = climb_holding(posterior, line, held, FEW)? {
+            self.peak = peak;
+        }
+        Ok(())
+    }
+}

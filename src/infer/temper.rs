@@ -1,0 +1,77 @@
+//! Tempering from a frozen proposal, where learning alone does not do.
+
+use super::adapt::{Frozen, adapted};
+use super::backends::Smc;
+use super::estimate::{Precision, estimated};
+use super::proposal::{Base, Mixture};
+use super::schedule::Schedule;
+use super::{Inference, Progress};
+use crate::error::Result;
+use crate::model::Posterior;
+use crate::seed::Seed;
+
+/// The most components fitted to the particles.
+const FITTED: usize = 6;
+
+/// Moves after each step of tempering: what is drawn from the mixture is in
+/// every place already.
+const MOVES: f64 = 3.0;
+
+/// How far apart, in ln, the two estimates may lie without a warning.
+const ALIKE: f64 = 1.0;
+
+/// Tempers from a frozen proposal, and lets it learn from the particles. Where
+/// its weights are good then, fresh draws of it make the estimate; else
+/// tempering's own is the one.
+///
+/// # Errors
+/// What no other parameter values would mend.
+pub(super) fn tempered(
+    posterior: &Posterior<'_>,
+    frozen: &Frozen,
+    schedule: &Schedule,
+    seed: Seed,
+    progress: &dyn Progress,
+) -> Result<Inference> {
+    let smc = Smc {
+        particles: schedule.particles,
+        moves: MOVES,
+        forget: false,
+        ..Smc::default()
+    };
+    let base = Base::Mixture(frozen.mixture.clone());
+    let (led, places) =
+        smc.passage_of(posterior, base, seed.child(0), progress)?;
+    let even = vec![1.0 / places.len() as f64; places.len()];
+    let mut rng = seed.child(1).rng();
+    let Some(fitted) = Mixture::fit(&places, &even, FITTED, &mut rng) else {
+        return Ok(led);
+    };
+    let mixture = fitted.beside(frozen.mixture.clone());
+    let again = adapted(posterior, mixture, schedule, seed.child(2))?;
+    let precision = Precision::Sharp;
+    let sampled =
+        estimated(posterior, &again, schedule, precision, seed.child(3));
+    Ok(match sampled {
+        Ok(sampled) if again.good => sampled,
+        Ok(sampled) => compared(led, &sampled),
+        Err(_) => led,
+    })
+}
+
+/// Tempering's estimate, with an error no smaller than half of what the other
+/// differs by.
+fn compared(mut led: Inference, other: &Inference) -> Inference {
+    let (Some(one), Some(other)) = (&mut led.evidence, &other.evidence) else {
+        return led;
+    };
+    let apart = (one.log - other.log).abs();
+    one.se = one.se.max(0.5 * apart);
+    if apart > ALIKE {
+        led.warnings.push(format!(
+            "tempering and importance sampling find log evidences that are \
+             {apart:.1} apart: the first is stated"
+        ));
+    }
+    led
+}
