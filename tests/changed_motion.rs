@@ -16,7 +16,7 @@ use couloir::physics::forces::{Axis, Forces, Range, Shape, Stretch, Term};
 use couloir::physics::friction::{LAWS, Laws};
 use couloir::physics::track::Piece;
 use couloir::physics::{
-    GRAVITY, Path, Rate, Release, Track, sample, sample_changed,
+    GRAVITY, Path, Rate, Release, State, Track, sample, sample_changed,
 };
 use couloir::prior::AnyPrior;
 use couloir::scalar::{Grad, Kind, Plain, Real};
@@ -51,8 +51,8 @@ fn changed<K: couloir::physics::friction::LawKind>(
     let mut speeds = Vec::new();
     let at = times.iter().map(|&t| Real::new(t));
     let law = law.with(&values);
-    sample_changed(&path, &law, forces, release, at, |s| speeds.push(s.speed))
-        .unwrap();
+    let push = |s: State<K>| speeds.push(s.speed);
+    sample_changed(&path, &law, forces, release, at, true, push).unwrap();
     speeds
 }
 

@@ -212,16 +212,16 @@ impl Event {
         let context = friction.context();
         context.count_slide();
         let mut flow = Flow::new(self, friction);
-        if let Some(change) = friction.change()
-            && change.moves()
-        {
-            let visit = |state| flow.push(state, false);
-            self.slide_changed(friction, change, visit)?;
-            return Ok(flow);
-        }
         let speed_only = self.velocity.window() == 0.0
             && self.position.is_empty()
             && self.acceleration.is_empty();
+        if let Some(change) = friction.change()
+            && change.moves()
+        {
+            let visit = |state| flow.push(state, speed_only);
+            self.slide_changed(friction, change, speed_only, visit)?;
+            return Ok(flow);
+        }
         sample(
             &self.path(),
             friction.block(),
@@ -239,18 +239,20 @@ impl Event {
         &self,
         friction: &Declared<'_, K, L>,
         change: &Change<K>,
+        speed_only: bool,
         mut visit: impl FnMut(State<K>),
     ) -> Result<(), Stop> {
         let law = friction.block();
-        if change.window <= NO_WINDOW {
-            return self.motion(law, change, &self.samples, visit);
-        }
         let moments = || self.samples.iter().map(|&t| t - change.clock);
+        if change.window <= NO_WINDOW {
+            return self.changed(law, change, moments(), speed_only, visit);
+        }
         let since = moments().map(|t| (t - change.window).max(0.0));
         let mut begins = friction.context().buffer();
-        self.changed(law, change, since, |s| begins.push(s.distance))?;
+        let push = |s: State<K>| begins.push(s.distance);
+        self.changed(law, change, since, false, push)?;
         let mut windows = moments().zip(begins.iter());
-        self.changed(law, change, moments(), |state| {
+        self.changed(law, change, moments(), false, |state| {
             let Some((time, &begin)) = windows.next() else { return };
             let cut = change.window_begins && time < change.window;
             let lasts = if cut { time } else { change.window };
@@ -277,7 +279,7 @@ impl Event {
             return sample(&path, law, release, times, false, visit);
         }
         let moments = times.iter().map(|&t| t - change.clock);
-        self.changed(law, change, moments, visit)
+        self.changed(law, change, moments, false, visit)
     }
 
     /// The motion under a change at increasing times since the release.
@@ -286,11 +288,13 @@ impl Event {
         law: &L,
         change: &Change<K>,
         times: impl Iterator<Item = Real<K>>,
+        speed_only: bool,
         visit: impl FnMut(State<K>),
     ) -> Result<(), Stop> {
         let release = self.release_changed(change);
         let forces = self.forces(change);
-        sample_changed(&self.path(), law, &forces, release, times, visit)
+        let path = self.path();
+        sample_changed(&path, law, &forces, release, times, speed_only, visit)
     }
 
     /// The forces of a change. Where none is added, nothing says how often a

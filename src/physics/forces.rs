@@ -20,7 +20,7 @@ pub const STEPS: f64 = 100.0;
 const STAIRS: f64 = 200.0;
 
 /// Places \[m\] and times \[s\] nearer than this are the same.
-const NEAR: f64 = 1e-9;
+pub(crate) const NEAR: f64 = 1e-9;
 
 /// Along what a force is laid out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -127,7 +127,7 @@ pub(crate) struct Moment<K: Kind> {
     pub(crate) place: f64,
     /// Time [s].
     pub(crate) time: f64,
-    /// Speed [m/s].
+    /// Speed [m/s]; looked at by forces that bend.
     pub(crate) speed: Real<K>,
 }
 
@@ -188,7 +188,11 @@ impl<K: Kind> Term<K> {
     fn next(&self, axis: Axis, x: f64) -> Option<Real<K>> {
         let edge = match self.over {
             Stretch::Between(of, edges) if of == axis => {
-                edges.into_iter().find(|edge| edge.value() > x + NEAR)
+                let beyond = |edge: &Real<K>| edge.value() > x + NEAR;
+                edges.into_iter().find(beyond).filter(|edge| {
+                    // What never ends has no other edge.
+                    edge.value().is_finite()
+                })
             }
             _ => None,
         };

@@ -13,6 +13,7 @@ mod changed;
 mod elementary;
 mod exact;
 mod numeric;
+mod skim;
 mod walk;
 
 pub use changed::sample_changed;

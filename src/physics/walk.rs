@@ -10,6 +10,7 @@ use super::exact::{End, Force, Pace};
 use super::forces::Forces;
 use super::friction::{Friction, Rate, Site, Varies};
 use super::numeric::{NumericWalker, PLAIN, WITH_DERIVATIVES};
+use super::skim::{Crossing, Entry, skim};
 use super::track::{Piece, Track};
 use crate::error::Stop;
 use crate::scalar::{Kind, Real};
@@ -454,9 +455,7 @@ impl<K: Kind, L: Friction<K>> Walker<K> for ExactWalker<'_, K, L> {
 
 impl<K: Kind, L: Friction<K>> ExactWalker<'_, K, L> {
     /// Crosses whole pieces until one holds `time` or something else than a
-    /// border ends the leg. This is the loop that a simulation spends its
-    /// time in: its state stays in registers.
-    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN ends it too")]
+    /// border ends the leg.
     #[inline(always)]
     fn skim(
         &mut self,
@@ -465,32 +464,24 @@ impl<K: Kind, L: Friction<K>> ExactWalker<'_, K, L> {
         arrival: Pace<K>,
         after: Real<K>,
     ) -> Result<(), Stop> {
-        let (mut pace, mut begins) = (arrival, self.begins + after);
-        let c = rate.quadratic + rate.growth;
-        let b = Real::new(0.0);
+        let begins = self.begins + after;
+        let entry = Entry { index: self.index + 1, pace: arrival, begins };
         let last = self.pieces.len() - 1;
+        let c = rate.quadratic + rate.growth;
+        let push =
+            |piece: &Piece| piece.pull - rate.mu * piece.load - rate.constant;
+        let (entry, crossing) = skim(self.pieces, entry, last, time, c, push);
         self.within = Real::new(0.0);
-        for index in self.index + 1..last {
-            let piece = &self.pieces[index];
-            let a = piece.pull - rate.mu * piece.load - rate.constant;
-            let crossed =
-                Force { a, b, c }.cross(pace, Real::new(piece.length));
-            let Some((arrival, after)) = crossed else {
-                return self.land(index, pace, begins);
-            };
-            let ends = begins.value() + after.value();
-            if !(ends <= time) {
-                self.force = Force { a, b, c };
-                (self.index, self.pace, self.begins) = (index, pace, begins);
-                self.length = Real::new(piece.length);
-                self.end = End::Leaves { arrival, after };
-                self.ends = ends;
-                return finite(ends);
-            }
-            begins += after;
-            pace = arrival;
-        }
-        self.land(last, pace, begins)
+        let Some(Crossing { force, arrival, after, ends }) = crossing else {
+            return self.land(entry.index, entry.pace, entry.begins);
+        };
+        self.force = force;
+        self.index = entry.index;
+        (self.pace, self.begins) = (entry.pace, entry.begins);
+        self.length = Real::new(self.pieces[entry.index].length);
+        self.end = End::Leaves { arrival, after };
+        self.ends = ends;
+        finite(ends)
     }
 
     /// Enters a piece in the general way.

@@ -1,0 +1,60 @@
+//! Crossing whole pieces of the track: the loop that a simulation spends its
+//! time in. Its state stays in registers.
+
+use super::exact::{Force, Pace};
+use super::track::Piece;
+use crate::scalar::{Kind, Real};
+
+/// A mass that enters a piece.
+#[derive(Clone, Copy)]
+pub(crate) struct Entry<K: Kind> {
+    /// Which piece.
+    pub(crate) index: usize,
+    pub(crate) pace: Pace<K>,
+    /// When [s].
+    pub(crate) begins: Real<K>,
+}
+
+/// How it leaves the piece at the far border.
+#[derive(Clone, Copy)]
+pub(crate) struct Crossing<K: Kind> {
+    pub(crate) force: Force<K>,
+    pub(crate) arrival: Pace<K>,
+    /// After what time [s].
+    pub(crate) after: Real<K>,
+    /// When [s].
+    pub(crate) ends: f64,
+}
+
+/// Crosses whole pieces with du/dt = `push` - `c` u^2 until one holds `time`:
+/// that one, and how it is crossed. Without a crossing the piece, at the
+/// latest the one numbered `last`, has to be entered in the general way.
+#[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN ends it too")]
+#[inline(always)]
+pub(crate) fn skim<K: Kind>(
+    pieces: &[Piece],
+    entry: Entry<K>,
+    last: usize,
+    time: f64,
+    c: Real<K>,
+    push: impl Fn(&Piece) -> Real<K>,
+) -> (Entry<K>, Option<Crossing<K>>) {
+    let Entry { index: first, mut pace, mut begins } = entry;
+    let b = Real::new(0.0);
+    for index in first..last {
+        let piece = &pieces[index];
+        let force = Force { a: push(piece), b, c };
+        let crossed = force.cross(pace, Real::new(piece.length));
+        let Some((arrival, after)) = crossed else {
+            return (Entry { index, pace, begins }, None);
+        };
+        let ends = begins.value() + after.value();
+        if !(ends <= time) {
+            let crossing = Crossing { force, arrival, after, ends };
+            return (Entry { index, pace, begins }, Some(crossing));
+        }
+        begins += after;
+        pace = arrival;
+    }
+    (Entry { index: last.max(first), pace, begins }, None)
+}
