@@ -42,13 +42,13 @@ pub(super) fn adapted(
         let base = Base::Mixture(mixture.clone());
         let count = schedule.learning_draws;
         let found = population(posterior, &base, count, seed.child(0))?;
-        let (share, tail) = quality(&found);
+        let quality = quality(&found);
         let log = log_mean_weight(&found);
-        let good = share > schedule.good_share && tail < schedule.tail;
+        let good = schedule.is_good(quality);
         let mut state = Frozen {
             mixture: mixture.clone(),
             log,
-            excess: 1.0 / share - 1.0,
+            excess: 1.0 / quality.0 - 1.0,
             good,
         };
         if good {
@@ -75,6 +75,45 @@ pub(super) fn adapted(
         excess: f64::INFINITY,
         good: false,
     }))
+}
+
+/// The same, judged by more draws than it learned from; it learns from these
+/// where they say that it is poor.
+///
+/// # Errors
+/// As [`adapted`].
+pub(super) fn judged(
+    posterior: &Posterior<'_>,
+    mut frozen: Frozen,
+    schedule: &Schedule,
+    seed: Seed,
+) -> Result<Frozen> {
+    for time in 0..schedule.judgements {
+        let seed = seed.child(time);
+        let base = Base::Mixture(frozen.mixture.clone());
+        let count = schedule.judging_draws;
+        let found = population(posterior, &base, count, seed.child(0))?;
+        let quality = quality(&found);
+        let wider = if schedule.is_good(quality) {
+            let mixture = &frozen.mixture;
+            let seed = seed.child(1);
+            let checked = missed(posterior, mixture, &found, schedule, seed)?;
+            frozen.excess = checked.excess.max(1.0 / quality.0 - 1.0);
+            frozen.log = log_mean_weight(&found);
+            frozen.good = checked.mended.is_none();
+            checked.mended
+        } else {
+            frozen.good = false;
+            let late = schedule.reweighting_rounds + time;
+            let mixture = &frozen.mixture;
+            Some(taught(mixture, &found, late, schedule, seed.child(2)))
+        };
+        match wider {
+            None => return Ok(frozen),
+            Some(mixture) => frozen.mixture = mixture,
+        }
+    }
+    Ok(frozen)
 }
 
 /// What a round of draws teaches: in the first ones how much each component

@@ -125,7 +125,7 @@ pub(crate) struct Climb {
 
 impl Default for Climb {
     fn default() -> Self {
-        Self { steps: 60, longest: 2.0, arrived: 1e-3 }
+        Self { steps: 40, longest: 2.0, arrived: 3e-3 }
     }
 }
 

@@ -19,15 +19,15 @@ use crate::model::Posterior;
 
 /// Of how many peaks profiles are made at the most, and how far below the
 /// highest they may be, in ln.
-const PEAKS: usize = 3;
-const BELOW: f64 = 4.0;
+const PEAKS: usize = 2;
+const BELOW: f64 = 2.0;
 /// A stride, in widths of the peak.
-const STRIDE: f64 = 1.4;
+const STRIDE: f64 = 1.5;
 /// How far down a profile goes, in ln.
 const DOWN: f64 = 6.0;
 /// The most strides, and the most steps of a climb after each.
-const STRIDES: usize = 10;
-const FEW: usize = 4;
+const STRIDES: usize = 6;
+const FEW: usize = 3;
 /// How much above the normal approximation, in ln, a place becomes a
 /// component.
 const ABOVE: f64 = 0.4;

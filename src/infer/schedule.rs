@@ -6,11 +6,11 @@
 /// How the Laplace mixture searches, learns, and is judged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Schedule {
-    /// How many of the held places are climbed further, after one step each
-    /// has said what they promise. A prior wide in two edges has about a dozen
-    /// modes that count.
+    /// How many of the held places, none next to another, are climbed further
+    /// after one step each has said what they promise.
     pub(crate) promising: usize,
-    /// From how many of these a climb of all coordinates starts.
+    /// From how many of these a climb of all coordinates starts; most end soon
+    /// at a peak that is known.
     pub(crate) climbed: usize,
     /// Components that hold so much less than the best, in ln, are left to the
     /// prior's share: e^-10 of the posterior.
@@ -25,11 +25,16 @@ pub(crate) struct Schedule {
     /// The most rounds in all.
     pub(crate) rounds: u64,
     /// The effective share of draws at which a proposal is good, with a Pareto
-    /// tail index below `tail`.
+    /// tail index below 0.7: above it the mean of the weights has no variance
+    /// worth the name (Vehtari et al. 2024).
     pub(crate) good_share: f64,
-    /// A tail index above which the mean of the weights has no variance worth
-    /// the name (Vehtari et al. 2024: 0.7).
-    pub(crate) tail: f64,
+    /// The share at which it is good with an index below 1: of few draws the
+    /// index scatters by 0.2.
+    pub(crate) ample_share: f64,
+    /// Draws that a proposal is judged by before it is frozen, and how often
+    /// it may fail and learn from them.
+    pub(crate) judging_draws: usize,
+    pub(crate) judgements: u64,
     /// How many draws are moved on to look for places that the proposal misses.
     pub(crate) moved: usize,
     /// By these draws, the effective share below which a place was missed:
@@ -43,18 +48,28 @@ pub(crate) struct Schedule {
     pub(crate) particles: usize,
 }
 
+impl Schedule {
+    /// Whether weights of such an effective share and tail index are good.
+    pub(crate) fn is_good(&self, (share, tail): (f64, f64)) -> bool {
+        (share > self.good_share && tail < 0.7)
+            || (share > self.ample_share.max(self.good_share) && tail < 1.0)
+    }
+}
+
 impl Default for Schedule {
     fn default() -> Self {
         Self {
-            promising: 40,
-            climbed: 10,
+            promising: 80,
+            climbed: 20,
             negligible: 10.0,
-            components: 120,
+            components: 100,
             learning_draws: 500,
             reweighting_rounds: 2,
-            rounds: 6,
+            rounds: 4,
             good_share: 0.1,
-            tail: 0.7,
+            ample_share: 0.25,
+            judging_draws: 2000,
+            judgements: 4,
             moved: 200,
             reached_share: 0.05,
             error: 0.04,

@@ -37,6 +37,9 @@ pub struct SearchSpace {
 pub struct HeldGrid {
     /// Which coordinates.
     pub held: Vec<usize>,
+    /// Which others begin where a place has them, such as an amplitude of
+    /// either sign; the rest begin there too, and later at the best peak.
+    pub kept: Vec<usize>,
     /// The places.
     pub places: Vec<HeldPlace>,
 }
@@ -165,14 +168,17 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
             .collect::<Result<Vec<_>>>()?;
         let mut found: Vec<Looked<'s>> = found.into_iter().flatten().collect();
         by_height(&mut found);
-        let promising = found.iter_mut().take(self.schedule.promising);
-        promising.par_bridge().try_for_each(|one| one.climb_on(posterior))?;
-        by_height(&mut found);
-        let best = found.iter().take(self.schedule.climbed);
+        let mut promising = spread(&mut found, self.schedule.promising);
+        promising
+            .par_iter_mut()
+            .try_for_each(|one| one.climb_on(posterior))?;
+        by_height(&mut promising);
+        let best = promising.iter().take(self.schedule.climbed);
         let best: Vec<_> = best.map(|one| one.peak.line.clone()).collect();
         for start in best {
             self.climb(start.as_slice())?;
         }
+        self.looked.extend(promising);
         self.looked.extend(found);
         Ok(())
     }
@@ -200,6 +206,23 @@ fn by_height(found: &mut [Looked<'_>]) {
     found.sort_by(|a, b| b.peak.height.total_cmp(&a.peak.height));
 }
 
+/// Takes the highest of some places, so many at the most, none next to another
+/// of its grid.
+fn spread<'s>(found: &mut Vec<Looked<'s>>, most: usize) -> Vec<Looked<'s>> {
+    let (mut taken, mut left): (Vec<Looked<'s>>, Vec<Looked<'s>>) =
+        (Vec::new(), Vec::new());
+    for one in found.drain(..) {
+        let full = taken.len() == most;
+        if full || taken.iter().any(|other| one.is_next_to(other)) {
+            left.push(one);
+        } else {
+            taken.push(one);
+        }
+    }
+    *found = left;
+    taken
+}
+
 /// Where one damped step leads from a held place; `None` where there is no
 /// density.
 fn glance<'s>(
@@ -211,7 +234,8 @@ fn glance<'s>(
     let mut line = DVector::from_column_slice(&place.line);
     if let Some(from) = from {
         let mut other = from.clone();
-        grid.held.iter().for_each(|&i| other[i] = line[i]);
+        let own = grid.held.iter().chain(&grid.kept);
+        own.for_each(|&i| other[i] = line[i]);
         line = other;
     }
     let landscape = Held { posterior, held: &grid.held };
@@ -235,6 +259,15 @@ const DAMPING: f64 = 1e-2;
 const LONGEST: f64 = 3.0;
 
 impl Looked<'_> {
+    /// Whether it is within a spacing of another place of its grid.
+    fn is_next_to(&self, other: &Self) -> bool {
+        let held = self.grid.held.iter().zip(&self.place.spacing);
+        std::ptr::eq(self.grid, other.grid)
+            && held.into_iter().all(|(&i, spacing)| {
+                (self.place.line[i] - other.place.line[i]).abs() < *spacing
+            })
+    }
+
     fn climb_on(&mut self, posterior: &Posterior<'_>) -> Result<()> {
         let (line, held) = (self.peak.line.as_slice(), &self.grid.held[..]);
         if let Some(peak) = climb_holding(posterior, line, held, FEW)? {

@@ -108,16 +108,17 @@ fn even(along: &[Unknown], others: &Others, seed: Seed) -> HeldGrid {
     let free = usize::from(along.len() > 1 && is_signed(&along[0]));
     let first = others.before.len();
     let held = (first + free..first + along.len()).collect();
-    let kept = &along[free..];
+    let kept = (first..first + free).collect();
+    let searched = &along[free..];
     let amplitude = vec![0.0; free];
-    let places = spread(kept, places(kept.len()), seed)
+    let places = spread(searched, places(searched.len()), seed)
         .into_iter()
         .map(|(place, apart)| {
             let line = others.with(&[&amplitude[..], &place].concat());
             HeldPlace { line, spacing: apart }
         })
         .collect();
-    HeldGrid { held, places }
+    HeldGrid { held, kept, places }
 }
 
 fn is_signed(amplitude: &Unknown) -> bool {
@@ -147,9 +148,10 @@ fn narrow(along: &[Unknown], others: &Others) -> Option<HeldGrid> {
             })
         })
         .collect();
-    let first = others.before.len() + 1;
-    let held = (first..first + along.len() - 1).collect();
-    Some(HeldGrid { held, places })
+    let first = others.before.len();
+    let held = (first + 1..first + along.len()).collect();
+    let kept = vec![first];
+    Some(HeldGrid { held, kept, places })
 }
 
 /// A place on the line with how far the next ones lie, in each coordinate.

@@ -11,7 +11,7 @@
 //! learn is *tempered* (`temper.rs`).
 
 use crate::error::{Error, Result};
-use crate::infer::adapt::{Frozen, adapted};
+use crate::infer::adapt::{Frozen, adapted, judged};
 use crate::infer::estimate::{Precision, estimated};
 use crate::infer::proposal::{Component, Mixture};
 use crate::infer::schedule::Schedule;
@@ -90,10 +90,16 @@ impl LaplaceMixture {
     ) -> Result<Inference> {
         progress.begin("importance sampling", None);
         let schedule = &self.schedule;
-        if frozen.good || precision == Precision::Rough {
+        if precision == Precision::Rough {
             return estimated(posterior, frozen, schedule, precision, seed);
         }
-        tempered(posterior, frozen, schedule, seed, progress)
+        let first = frozen.clone();
+        let judged = judged(posterior, first, schedule, seed.child(0))?;
+        let seed = seed.child(1);
+        if judged.good {
+            return estimated(posterior, &judged, schedule, precision, seed);
+        }
+        tempered(posterior, &judged, schedule, seed, progress)
     }
 
     /// About the log evidence, from the normal approximations of the peaks
