@@ -10,8 +10,8 @@ use couloir::diagnosis::{
 };
 use couloir::draws::summarise;
 use couloir::infer::{Backend, LaplaceMixture, Quiet, Smc};
-use couloir::mechanism::Mechanism;
 use couloir::mechanism::catalogue::{FrictionPatch, find};
+use couloir::mechanism::{Mechanism, Role};
 use couloir::model::{Assembled, Model, Point, Posterior, Program, With};
 use couloir::noise::{self, Iid, Noise};
 use couloir::physics::Track;
@@ -124,8 +124,9 @@ fn a_stretch_ends_within_the_run_unless_the_file_has_a_prior() {
     let middle =
         |model: &Assembled| model.middle(&before).unwrap() / extent.run;
     assert!(middle(&inside) < 0.3 && middle(&free) > 0.5);
-    assert_eq!(inside.ends_by(4), Some(extent.begin + extent.run));
-    assert_eq!(free.ends_by(4), None);
+    let until = extent.begin + extent.run;
+    assert_eq!(inside.role(4), Role::Length { until });
+    assert_eq!(free.role(4), Role::Other);
 }
 
 /// A slide whose model has a mechanism already, under priors of a file.

@@ -4,33 +4,33 @@ use super::number::Number;
 use super::run::{Label, Run};
 use crate::block::List;
 use crate::error::Stop;
-use crate::mechanism::Unknown;
+use crate::mechanism::{Role, Unknown};
 use crate::prior::{AnyPrior, Prior as _, Uniform};
 use crate::scalar::{Kind, Plain, Real};
 
-/// A parameter of a mechanism; `until` as of its [`Unknown`].
+/// A parameter of a mechanism, or of a model put together at run time.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Amount<'a> {
     pub(super) label: Label<'a>,
     pub(super) prior: AnyPrior,
-    pub(super) until: Option<f64>,
+    pub(super) role: Role,
 }
 
 impl<'a> Amount<'a> {
     pub(super) fn of(name: &'a str, unknown: &Unknown) -> Self {
-        let Unknown { unit, prior, until, .. } = *unknown;
-        Self { label: Label::new(name, unit), prior, until }
+        let Unknown { unit, prior, role, .. } = *unknown;
+        Self { label: Label::new(name, unit), prior, role }
     }
 
     /// The prior of a length that has to end within the run, given the amount
     /// before it, where its stretch begins; `None` where its own prior holds.
     fn left<K: Kind>(&self, before: Option<Real<K>>) -> Option<Uniform<K>> {
-        let (AnyPrior::Uniform(shortest, _), Some(end)) =
-            (self.prior, self.until)
+        let (AnyPrior::Uniform(shortest, _), Role::Length { until }) =
+            (self.prior, self.role)
         else {
             return None;
         };
-        let left = Real::new(end) - before?;
+        let left = Real::new(until) - before?;
         // At the very end the shortest one has to have room.
         let least = Real::new(2.0 * shortest);
         let longest = if left > least { left } else { least };
@@ -79,6 +79,7 @@ mod tests {
     use super::*;
     use crate::error::Outcome;
     use crate::model::{Point, Posterior, Program};
+    use crate::physics::forces::Axis;
     use crate::seed::Seed;
 
     /// A stretch from somewhere in 0 to 10 on, at least 1 long.
@@ -86,13 +87,14 @@ mod tests {
 
     impl Program for Stretch {
         fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
-            let amount = |name, low, until| Amount {
+            let amount = |name, low, role| Amount {
                 label: Label::new(name, "m"),
                 prior: AnyPrior::Uniform(low, 10.0),
-                until,
+                role,
             };
-            let from = amount("from", 0.0, None);
-            run.amounts([from, amount("length", 1.0, Some(10.0))]).map(|_| ())
+            let from = amount("from", 0.0, Role::Edge(Axis::Place));
+            let within = Role::Length { until: 10.0 };
+            run.amounts([from, amount("length", 1.0, within)]).map(|_| ())
         }
     }
 

@@ -13,7 +13,7 @@ use super::program::Program;
 use super::run::{Label, Run};
 use crate::block::{Field, List};
 use crate::error::{Error, Outcome, Result, Stop};
-use crate::mechanism::{Change, Mechanism};
+use crate::mechanism::{Change, Mechanism, Role};
 use crate::noise::{self, NoiseEntry, Spacing};
 use crate::observe::{Event, Quantity};
 use crate::physics::friction::LawSum;
@@ -41,15 +41,14 @@ struct Unknown {
     name: String,
     unit: String,
     prior: AnyPrior,
-    /// As of a mechanism's unknown.
-    until: Option<f64>,
+    role: Role,
 }
 
 impl Unknown {
     fn amount(&self) -> Amount<'_> {
-        let Self { name, unit, prior, until } = self;
+        let Self { name, unit, prior, role } = self;
         let label = Label::new(name, unit);
-        Amount { label, prior: *prior, until: *until }
+        Amount { label, prior: *prior, role: *role }
     }
 }
 
@@ -81,7 +80,7 @@ impl Assembled {
                 name: name.clone(),
                 unit: unit_of(field, unit),
                 prior,
-                until: None,
+                role: Role::Other,
             });
         }
         check_uneven(&event, noise.as_ref(), &fields, &unknowns)?;
@@ -112,11 +111,11 @@ impl Assembled {
             self.mechanisms.push((Arc::from(mechanism), added.len()));
             self.unknowns.extend(added.into_iter().map(|unknown| {
                 let name = format!("{name}.{}", unknown.name);
-                let (prior, until) = match priors.get(&name) {
-                    Some(given) => (*given, None),
-                    None => (unknown.prior, unknown.until),
+                let (prior, role) = match priors.get(&name) {
+                    Some(given) => (*given, Role::Other),
+                    None => (unknown.prior, unknown.role),
                 };
-                Unknown { name, unit: unknown.unit.to_owned(), prior, until }
+                Unknown { name, unit: unknown.unit.to_owned(), prior, role }
             }));
         }
         Ok(self)
@@ -309,10 +308,10 @@ impl Assembled {
         self.unknowns.iter().map(|u| (u.name.as_str(), &u.prior))
     }
 
-    /// Where a stretch ends at the latest whose length this parameter is;
-    /// `None` where it is none, or has a prior of its own.
-    pub fn ends_by(&self, parameter: usize) -> Option<f64> {
-        self.unknowns.get(parameter).and_then(|unknown| unknown.until)
+    /// What a parameter is to its mechanism; `Other` where it is of none, or
+    /// has been given another prior than the mechanism's.
+    pub fn role(&self, parameter: usize) -> Role {
+        self.unknowns.get(parameter).map_or(Role::Other, |own| own.role)
     }
 
     /// The middle of the prior of the parameter that comes after given

@@ -42,6 +42,15 @@ impl Axis {
             Self::Speed => "speed",
         }
     }
+
+    /// The unit of what is measured along it.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Place => "m",
+            Self::Time => "s",
+            Self::Speed => "m/s",
+        }
+    }
 }
 
 /// Where a term acts.

@@ -91,7 +91,7 @@ impl Candidate for FreeForm {
         (0..CELLS)
             .map(|i| {
                 let prior = AnyPrior::Normal(0.0, 1.0);
-                Unknown::new(format!("wave[{}]", i + 1), "1", prior)
+                Unknown::amplitude(format!("wave[{}]", i + 1), "1", prior)
             })
             .collect()
     }

@@ -16,8 +16,8 @@ pub(crate) fn declarations(model: &Assembled) -> Option<[String; 2]> {
     let own: Vec<_> = model.mechanisms().flat_map(|m| m.unknowns()).collect();
     let blocks = model.friction_dimension() + model.noise_dimension();
     let given = model.priors().enumerate().skip(blocks);
-    let given = given.map(|(i, (_, prior))| (*prior, model.ends_by(i)));
-    if !given.eq(own.iter().map(|unknown| (unknown.prior, unknown.until))) {
+    let given = given.map(|(i, (_, prior))| (*prior, model.role(i)));
+    if !given.eq(own.iter().map(|unknown| (unknown.prior, unknown.role))) {
         return None;
     }
     let mut priors = model.priors().map(|(_, prior)| *prior);

@@ -47,7 +47,6 @@ use crate::mechanism::Extent;
 use crate::mechanism::{Candidate, Change, Mechanism, Unknown};
 use crate::physics::Rate;
 use crate::physics::forces::{Axis, STEPS, Shape, Stretch, Term};
-use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
 
 /// The prior sd of a force at the upper-quartile speed \[m/s2\].
@@ -182,31 +181,27 @@ fn or(amplitude: f64, words: [&'static str; 3]) -> &'static str {
     }
 }
 
-fn unknown(name: &str, unit: &'static str, prior: AnyPrior) -> Unknown {
-    Unknown::new(name, unit, prior)
-}
-
 /// Where a stretch of the run begins, uniform, and how long it is: uniform from
 /// the shortest that values can show to what is left of the run.
 fn stretch(
     names: [&str; 2],
-    unit: &'static str,
+    axis: Axis,
     [begin, end]: [f64; 2],
     shortest: f64,
 ) -> [Unknown; 2] {
-    let from = AnyPrior::Uniform(begin, end);
-    let length = AnyPrior::Uniform(shortest, end - begin);
-    let length = unknown(names[1], unit, length);
-    let until = Some(end);
-    [unknown(names[0], unit, from), Unknown { until, ..length }]
+    let lengths = [shortest, end - begin];
+    [
+        Unknown::edge(names[0], axis, [begin, end]),
+        Unknown::length(names[1], axis, lengths, end),
+    ]
 }
 
 /// An amplitude, where its stretch begins, and how long that is.
 fn along_place(extent: &Extent, amplitude: Unknown) -> Vec<Unknown> {
     let Extent { begin, run, duration, step, .. } = *extent;
     let shortest = run * (step / duration).min(0.5);
-    let names = ["from", "length"];
-    let [from, length] = stretch(names, "m", [begin, begin + run], shortest);
+    let (names, edges) = (["from", "length"], [begin, begin + run]);
+    let [from, length] = stretch(names, Axis::Place, edges, shortest);
     vec![amplitude, from, length]
 }
 
