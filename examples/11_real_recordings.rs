@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use couloir::diagnosis::{
-    Diagnosis, Options, Sharing, Together, diagnose, diagnose_together, fit,
-    in_words,
+    Diagnosis, Hypothesis, Options, Sharing, Together, diagnose,
+    diagnose_together, fit, in_words,
 };
 use couloir::infer::LaplaceMixture;
 use couloir::io::{self, EventFile};
-use couloir::mechanism::catalogue::find;
+use couloir::mechanism::{Family, catalogue::find};
 use couloir::model::Assembled;
 use couloir::prelude::*;
 use couloir::prior::AnyPrior;
@@ -47,7 +47,10 @@ fn model(path: &Path, rate: f64, own: &[(&str, &str)]) -> Result<Assembled> {
 fn row(what: &str, d: &Diagnosis) {
     let i = d.improvement;
     let physics = |name: &str| {
-        let mut added = d.mechanisms.iter().filter(|m| m.kind == "physics");
+        let mut added = d
+            .mechanisms
+            .iter()
+            .filter(|m| m.kind == Hypothesis::Mechanism(Family::Physics));
         added
             .any(|m| d.selected.contains(&m.name) && name.starts_with(&m.name))
     };

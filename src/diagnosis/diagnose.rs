@@ -12,7 +12,7 @@ use crate::diagnosis::decide::judge::{
 };
 use crate::diagnosis::evidence::attribute::attribute;
 use crate::diagnosis::evidence::fit::Fit;
-use crate::diagnosis::findings::{Diagnosis, Verdict};
+use crate::diagnosis::findings::{Diagnosis, UNKNOWN, Verdict};
 use crate::diagnosis::locate::{FreeForce, free_fit, locate_all};
 use crate::diagnosis::options::Options;
 use crate::diagnosis::tell::paste::corrected;
@@ -184,7 +184,7 @@ impl<P: Program> Subject<'_, P> {
             improvement: improvement(none, fit, &old, &new),
             parameters: told(&summarise(&fit.draws), None)
                 .into_iter()
-                .filter(|p| !p.name.starts_with("unknown."))
+                .filter(|p| p.within(UNKNOWN).is_none())
                 .collect(),
             pictured: pictured(&self.events, &old, &new, after.is_some()),
             draws: Some(fit.draws.clone()),

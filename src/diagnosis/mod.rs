@@ -20,8 +20,8 @@ pub use diagnose::{diagnose, diagnose_together};
 pub use evidence::attribute::{Attribution, attribute, pair};
 pub use evidence::fit::{Fit, fit};
 pub use findings::{
-    Baseline, Corrected, Diagnosis, Improvement, Judged, Mismatch, Pair,
-    Pictured, Rival, Told, Verdict,
+    Baseline, Corrected, Diagnosis, Hypothesis, Improvement, Judged, Mismatch,
+    Pair, Pictured, Rival, Told, Verdict,
 };
 pub use locate::{CELLS, FreeForce, locate};
 pub use options::Options;

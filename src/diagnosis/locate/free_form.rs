@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use super::look::Process;
 use super::{CELLS, NOUN, SAYS};
 use crate::block::List;
+use crate::diagnosis::findings::UNKNOWN;
 use crate::error::{Error, Result};
 use crate::mechanism::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::observe::Extent;
@@ -72,7 +73,7 @@ impl FreeForm {
 
 impl Candidate for FreeForm {
     fn name(&self) -> &'static str {
-        "unknown"
+        UNKNOWN
     }
 
     fn family(&self) -> Family {

@@ -107,18 +107,14 @@ pub(crate) fn interval(p: &Told) -> String {
 
 /// The parameter's own name, without that of its mechanism.
 pub(crate) fn own_name<'a>(p: &'a Told, mechanism: &str) -> &'a str {
-    let rest = p.name.strip_prefix(mechanism);
-    rest.and_then(|rest| rest.strip_prefix('.')).unwrap_or(&p.name)
+    p.within(mechanism).unwrap_or(&p.name)
 }
 
 /// A selected mechanism's parameters: those of the corrected model where it
 /// has them, else those that the mechanism had alone.
 pub(crate) fn amounts<'a>(d: &'a Diagnosis, name: &str) -> Vec<&'a Told> {
-    let joint: Vec<&Told> = d
-        .parameters
-        .iter()
-        .filter(|p| own_name(p, name).len() < p.name.len())
-        .collect();
+    let joint: Vec<&Told> =
+        d.parameters.iter().filter(|p| p.within(name).is_some()).collect();
     match judged(d, name) {
         Some(alone) if joint.is_empty() => alone.parameters.iter().collect(),
         _ => joint,
