@@ -70,10 +70,10 @@ pub struct Baseline {
     pub shapiro_wilk_p: f64,
     /// Posterior predictive p of the largest residual.
     pub predictive_p: f64,
-    /// The sd of the errors themselves, correlated or not, beside the
-    /// innovations'; where the noise is an autoregression.
+    /// The standard deviation of the first recording's errors, where each
+    /// depends on those before it.
     pub stationary_sd: Option<f64>,
-    /// The sd of the innovations; where the noise is an autoregression.
+    /// That of their innovations.
     pub innovation_sd: Option<f64>,
     /// The known error of a value, where the recording gives one.
     pub instrument: Option<f64>,
@@ -241,7 +241,8 @@ pub struct Improvement {
     /// The least error that the motion reaches, whatever priors and noise
     /// say; NaN where it was not searched.
     pub least_squares: Pair,
-    /// The sd of the errors themselves under AR(1) noise; NaN under others.
+    /// The standard deviation of the first recording's errors, where each
+    /// depends on those before it; NaN where none does.
     pub stationary_sd: Pair,
     /// Expected log predictive density by PSIS-LOO.
     pub elpd: Pair,

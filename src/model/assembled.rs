@@ -236,6 +236,11 @@ impl Assembled {
         self.noise.parameters().len()
     }
 
+    /// The field of the noise that each of these is a value of.
+    pub(crate) fn noise_fields(&self) -> impl Iterator<Item = Field> {
+        self.noise.parameters().into_iter().map(|(_, field)| field)
+    }
+
     /// How many of the parameters are the friction law's; they come first.
     pub fn friction_dimension(&self) -> usize {
         self.laws

@@ -36,6 +36,15 @@ pub struct Conditional<K: Kind> {
     pub deviate: Real<K>,
 }
 
+/// How large errors are that depend on those before them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stationary {
+    /// The standard deviation of an error \[unit of the recording\].
+    pub error_sd: f64,
+    /// That of its innovation, what those before it do not tell.
+    pub innovation_sd: f64,
+}
+
 /// A distribution of residuals.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a noise",
@@ -76,6 +85,11 @@ pub trait Noise<K: Kind> {
     /// for; the same number where the innovations are normal.
     fn standardise(&self, deviate: f64) -> f64 {
         deviate
+    }
+
+    /// How large its errors are, where each depends on those before it.
+    fn stationary(&self) -> Option<Stationary> {
+        None
     }
 
     /// The innovations as standard normal deviates: independent draws of

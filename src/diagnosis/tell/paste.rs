@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use crate::block::Field;
 use crate::diagnosis::findings::Corrected;
 use crate::diagnosis::options::Options;
 use crate::mechanism::Mechanism;
@@ -34,24 +35,34 @@ pub(crate) fn declarations(model: &Assembled) -> Option<[String; 2]> {
             Some(format!("{} {{ {} }}", camel(name), fields.join(", ")))
         })
         .collect::<Option<Vec<_>>>()?;
-    let noise = model.noise();
-    let errors = match noise.split('(').next()? {
-        "ar" => {
-            let rest: Vec<String> = priors
-                .by_ref()
-                .take(model.noise_dimension())
-                .map(rust)
-                .collect();
-            let (sigma2, phi) = rest.split_last()?;
-            format!("Ar {{ phi: [{}], sigma2: {sigma2} }}", phi.join(", "))
-        }
-        "student" => {
-            let (dof, scale) = (rust(priors.next()?), rust(priors.next()?));
-            format!("Student {{ dof: {dof}, scale: {scale} }}")
-        }
-        _ => format!("Iid {{ sigma2: {} }}", rust(priors.next()?)),
-    };
+    let errors = errors(model, &mut priors)?;
     Some([terms.join(" + "), errors])
+}
+
+/// The noise with its priors: `Ar { phi: [Uniform(..)], sigma2: .. }`.
+fn errors(
+    model: &Assembled,
+    priors: &mut impl Iterator<Item = AnyPrior>,
+) -> Option<String> {
+    let noise = model.noise();
+    let mut fields: Vec<(Field, Vec<String>)> = Vec::new();
+    for field in model.noise_fields() {
+        let prior = rust(priors.next()?);
+        match fields.last_mut() {
+            Some((last, list)) if last.name == field.name => list.push(prior),
+            _ => fields.push((field, vec![prior])),
+        }
+    }
+    let told = |(field, priors): &(Field, Vec<String>)| {
+        let priors = priors.join(", ");
+        match field.list {
+            true => format!("{}: [{priors}]", field.name),
+            false => format!("{}: {priors}", field.name),
+        }
+    };
+    let fields: Vec<String> = fields.iter().map(told).collect();
+    let name = camel(noise.split('(').next()?);
+    Some(format!("{name} {{ {} }}", fields.join(", ")))
 }
 
 /// "velocity-weakening" as the struct is called.

@@ -516,7 +516,11 @@ pub(crate) fn before_and_after(d: &Diagnosis) -> Vec<Row> {
         row("Ljung-Box p".to_owned(), i.ljung_box_p, p_value),
     ];
     if i.stationary_sd.before.is_finite() {
-        rows.push(row(format!("AR(1) sd{units}"), i.stationary_sd, two));
+        rows.push(row(
+            format!("sd of the errors{units}"),
+            i.stationary_sd,
+            two,
+        ));
     }
     rows
 }
