@@ -128,9 +128,8 @@ fn predicted(paths: &[PathBuf], left: usize, name: &str) -> Result<f64> {
     let rows = known.draws.thinned(400);
     for row in &rows {
         // Of the event itself only the law counts: its errors do not.
-        let mut own = row[count..count + laws].to_vec();
+        let mut own = row[..count + laws].to_vec();
         own.extend(vec![0.5; rest]);
-        own.extend(&row[..count]);
         let states = unseen.motion(&own, series.times());
         let states = states.map_err(|_| Error::inference("no flow"))?;
         for (sum, state) in mean.iter_mut().zip(states) {

@@ -1,6 +1,5 @@
 //! One of several events of a program, and what all of them have in common.
 
-use super::amount::Amount;
 use super::number::Number;
 use super::program::Program;
 use super::run::Run;
@@ -32,21 +31,20 @@ impl<P: Program> Program for Alone<'_, P> {
 #[derive(Debug)]
 pub struct Common<'a, P> {
     program: &'a P,
-    added: Vec<(String, Unknown)>,
+    added: Vec<Unknown>,
 }
 
 impl<'a, P: Program> Common<'a, P> {
     /// What a program's events have in common, with what mechanisms add to
     /// it, by name.
-    pub fn new(program: &'a P, added: Vec<(String, Unknown)>) -> Self {
+    pub fn new(program: &'a P, added: Vec<Unknown>) -> Self {
         Self { program, added }
     }
 }
 
 impl<P: Program> Program for Common<'_, P> {
     fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
-        let added = self.added.iter();
-        run.amounts(added.map(|(name, unknown)| Amount::of(name, unknown)))?;
+        run.amounts(&self.added)?;
         self.program.run_common(run)
     }
 }

@@ -6,6 +6,7 @@
 //! same run with another listener. [`Model`] is the object-safe face of a
 //! program; every program has it.
 
+mod added;
 mod alone;
 mod amount;
 mod assembled;

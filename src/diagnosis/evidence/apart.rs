@@ -85,9 +85,12 @@ impl<'a> Shares<'a> {
     }
 
     /// What is in common, by name.
-    fn added(&self) -> impl Iterator<Item = (String, Unknown)> {
+    fn added(&self) -> impl Iterator<Item = Unknown> {
         let unknowns = self.all.unknowns().into_iter().take(self.common);
-        unknowns.map(|u| (format!("{}.{}", self.all.name(), u.name), u))
+        unknowns.map(|u| {
+            let name = format!("{}.{}", self.all.name(), u.name);
+            Unknown { name, ..u }
+        })
     }
 }
 

@@ -14,14 +14,14 @@ use crate::prior::AnyPrior;
 /// `None` where a law is not one of the crate's own, or a mechanism has
 /// another prior than its own.
 pub(crate) fn declarations(model: &Assembled) -> Option<[String; 2]> {
-    let own: Vec<_> = model.mechanisms().flat_map(|m| m.unknowns()).collect();
-    let blocks = model.friction_dimension() + model.noise_dimension();
-    let given = model.priors().enumerate().skip(blocks);
+    let added: Vec<_> =
+        model.mechanisms().flat_map(|m| m.unknowns()).collect();
+    let given = model.priors().enumerate().take(added.len());
     let given = given.map(|(i, (_, prior))| (*prior, model.role(i)));
-    if !given.eq(own.iter().map(|unknown| (unknown.prior, unknown.role))) {
+    if !given.eq(added.iter().map(|unknown| (unknown.prior, unknown.role))) {
         return None;
     }
-    let mut priors = model.priors().map(|(_, prior)| *prior);
+    let mut priors = model.priors().skip(added.len()).map(|(_, p)| *p);
     let friction = model.friction();
     let terms = friction
         .split(" + ")

@@ -61,10 +61,7 @@ impl Together {
         let events = events
             .into_iter()
             .zip(&labels)
-            .map(|(event, label)| {
-                let laws = event.friction_dimension();
-                event.labelled(label, if shared_friction { laws } else { 0 })
-            })
+            .map(|(event, label)| event.labelled(label, shared_friction))
             .collect();
         Ok(Self { events, labels, shared_friction })
     }
@@ -208,8 +205,7 @@ impl Program for Together {
 fn check_alike(first: &Assembled, other: &Assembled) -> Result<()> {
     let laws = |model: &Assembled| -> Vec<(String, AnyPrior)> {
         model
-            .priors()
-            .take(model.friction_dimension())
+            .law_priors()
             .map(|(name, prior)| (name.to_owned(), *prior))
             .collect()
     };
