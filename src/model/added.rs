@@ -60,6 +60,7 @@ impl<'a, M: Deref<Target = dyn Mechanism + 'a>> Added<M> {
         run: &mut Run<'_, K>,
     ) -> Result<Change<K>, Stop> {
         let values = run.amounts(&self.unknowns)?;
+        run.has(|say| self.each().for_each(|own| say(own.name())));
         Ok(self.change(&values))
     }
 

@@ -10,6 +10,7 @@ mod added;
 mod alone;
 mod amount;
 mod assembled;
+mod blocks;
 mod information;
 mod listener;
 mod number;
@@ -21,6 +22,7 @@ mod with;
 
 pub use alone::{Alone, Common};
 pub use assembled::Assembled;
+pub use blocks::declared_blocks;
 pub use information::Information;
 pub use listener::{Collected, Collector, Declaration, Listener, Replicates};
 pub use number::Number;
