@@ -107,7 +107,7 @@ fn alone(path: &Path) -> Result<()> {
 fn predicted(paths: &[PathBuf], left: usize, name: &str) -> Result<f64> {
     let others = paths.iter().enumerate().filter(|(i, _)| *i != left);
     let models = others.map(|(_, path)| model(path, RATE, &[]));
-    let together = Together::new(models.collect::<Result<_>>()?, true)?;
+    let together = Together::with_one_law(models.collect::<Result<_>>()?)?;
     let extent = together.extent();
     let found = match name {
         "" => None,
@@ -154,7 +154,7 @@ fn together(paths: &[PathBuf]) -> Result<()> {
     head();
     for sharing in [Sharing::Shared, Sharing::Pooled] {
         let models = paths.iter().map(|path| model(path, RATE, &[]));
-        let all = Together::new(models.collect::<Result<_>>()?, false)?;
+        let all = Together::new(models.collect::<Result<_>>()?)?;
         let options = Options::of_all(&all, 1);
         let found = diagnose_together(&all, sharing, &options, &Quiet)?;
         row(&format!("all, {sharing:?}"), &found);

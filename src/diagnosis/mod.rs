@@ -15,6 +15,7 @@ mod tell;
 mod tests;
 mod together;
 
+pub use crate::model::Together;
 pub use decide::judge::Odds;
 pub use diagnose::{diagnose, diagnose_together};
 pub use evidence::attribute::{Attribution, attribute, pair};
@@ -29,4 +30,4 @@ pub use tell::page::page;
 pub use tell::pictures::pictures;
 pub use tell::summary::summary;
 pub use tell::words::in_words;
-pub use together::{Sharing, Together};
+pub use together::Sharing;

@@ -97,18 +97,6 @@ impl Assembled {
         Ok(self)
     }
 
-    /// The same model with a label before the name of each parameter, for use
-    /// beside others; those of the laws keep theirs where all share them.
-    #[must_use]
-    pub fn labelled(mut self, label: &str, shared_laws: bool) -> Self {
-        let free = if shared_laws { self.laws } else { 0 };
-        let own = self.own.iter_mut().skip(free);
-        for unknown in self.added.unknowns_mut().iter_mut().chain(own) {
-            unknown.name = format!("{label}.{}", unknown.name);
-        }
-        self
-    }
-
     /// All parameters, in order.
     fn unknowns(&self) -> impl Iterator<Item = &Unknown> {
         self.added.unknowns().iter().chain(&self.own)

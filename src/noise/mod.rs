@@ -17,6 +17,7 @@ mod tests;
 
 pub use altered::{Alteration, Altered};
 pub use ar::Ar;
+pub(crate) use catalogue::is_noise;
 pub use catalogue::{NoiseEntry, NoiseFor, NoiseKind, names, parse};
 pub use grid::{Grid, Spacing};
 pub use iid::Iid;

@@ -6,6 +6,7 @@ use crate::block::Field;
 use crate::diagnosis::findings::Corrected;
 use crate::diagnosis::options::Options;
 use crate::mechanism::Mechanism;
+use crate::mechanism::catalogue::is_built_in;
 use crate::model::Assembled;
 use crate::physics::friction::LAWS;
 use crate::prior::AnyPrior;
@@ -97,9 +98,11 @@ pub(crate) fn corrected(
     if added.is_empty() {
         return Corrected { equation, ..Corrected::default() };
     }
+    let is_found = all.iter().all(|m| is_built_in(m.name()));
     let model = options
         .declarations
         .as_ref()
+        .filter(|_| is_found)
         .map_or_else(String::new, |own| model_text(&all, own, quantity));
     let labels = all.iter().map(|m| m.label()).collect();
     Corrected { equation, model, labels }

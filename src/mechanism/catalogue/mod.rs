@@ -11,6 +11,7 @@ mod friction_patch;
 mod friction_step;
 mod heavy_tails;
 mod initial_velocity;
+mod list;
 mod release_position;
 mod sensor_drift;
 mod slope_bias;
@@ -32,6 +33,8 @@ pub use friction_patch::FrictionPatch;
 pub use friction_step::FrictionStep;
 pub use heavy_tails::HeavyTails;
 pub use initial_velocity::InitialVelocity;
+pub use list::{Catalogue, catalogue, find};
+pub(crate) use list::{is_built_in, is_held};
 pub use release_position::ReleasePosition;
 pub use sensor_drift::SensorDrift;
 pub use slope_bias::SlopeBias;
@@ -42,7 +45,6 @@ pub use velocity_scale::VelocityScale;
 pub use velocity_weakening::VelocityWeakening;
 pub use viscous_drag::ViscousDrag;
 
-use crate::error::{Error, Result};
 use crate::mechanism::Extent;
 use crate::mechanism::{Candidate, Change, Mechanism, Unknown};
 use crate::physics::Rate;
@@ -62,13 +64,9 @@ const ANGLE: f64 = 3.0;
 /// The prior sd of what a sensor has drifted by the end \[recorded unit\].
 const DRIFT: f64 = 2.0;
 
-/// Every mechanism that applies to an event of this extent and that a model
-/// with laws, noises and mechanisms of these names has not, variants one after
-/// the other.
-pub fn catalogue(
-    extent: &Extent,
-    blocks: &[String],
-) -> Vec<Box<dyn Mechanism>> {
+/// Every mechanism that comes along and applies to an event of this extent,
+/// variants one after the other.
+fn built_in(extent: &Extent) -> Vec<Box<dyn Mechanism>> {
     let extent = *extent;
     let (place, time, speed) = (Axis::Place, Axis::Time, Axis::Speed);
     let mut all: Vec<Box<dyn Mechanism>> = vec![
@@ -110,59 +108,7 @@ pub fn catalogue(
             all.push(Box::new(AveragingWindow { begins }));
         }
     }
-    all.retain(|m| !is_held(m.as_ref(), blocks));
     all
-}
-
-/// The mechanism that a label means; a name that has several variants means
-/// the first of them.
-///
-/// # Errors
-/// A label of none, or of one that does not apply here; the message lists
-/// those that do.
-pub fn find(
-    label: &str,
-    extent: &Extent,
-    blocks: &[String],
-) -> Result<Box<dyn Mechanism>> {
-    let wanted = without_spaces(label);
-    let is_it = |m: &dyn Mechanism| {
-        wanted == m.name() || wanted == without_spaces(&m.label())
-    };
-    let mut here = catalogue(extent, blocks);
-    if let Some(i) = here.iter().position(|m| is_it(m.as_ref())) {
-        return Ok(here.swap_remove(i));
-    }
-    let labels: Vec<String> = here.iter().map(|m| m.label()).collect();
-    let labels = labels.join(", ");
-    let everything =
-        Extent { carried: true, bends: true, averages: true, ..*extent };
-    let elsewhere = catalogue(&everything, &[]);
-    let known = elsewhere.into_iter().find(|m| is_it(m.as_ref()));
-    let why = match known {
-        None => "is no mechanism",
-        Some(m) if is_held(m.as_ref(), blocks) => {
-            "is a term that the model's laws or noise already have"
-        }
-        Some(_) => "has nothing to act on in this event",
-    };
-    Err(Error::input(format!(
-        "{label:?} {why}; expected one of {labels}: take one of them, or \
-         drop it"
-    )))
-}
-
-fn without_spaces(text: &str) -> String {
-    text.chars().filter(|c| !c.is_whitespace()).collect()
-}
-
-/// Whether a model with blocks of these names has the mechanism already, in
-/// this variant or another.
-pub(crate) fn is_held(mechanism: &dyn Candidate, blocks: &[String]) -> bool {
-    let also = mechanism.contained_in();
-    blocks
-        .iter()
-        .any(|own| own == mechanism.name() || also.contains(&own.as_str()))
 }
 
 /// A name with what tells the variant from the others that share it.
