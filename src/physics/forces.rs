@@ -156,6 +156,12 @@ impl<K: Kind> Term<K> {
         Self { rate, over: Stretch::Everywhere, shape: Shape::Even }
     }
 
+    /// A rate between two places \[m\] or two times \[s\].
+    pub fn between(axis: Axis, edges: [Real<K>; 2], rate: Rate<K>) -> Self {
+        let over = Stretch::Between(axis, edges);
+        Self { over, ..Self::everywhere(rate) }
+    }
+
     fn acts(&self, at: &Moment<K>) -> bool {
         match self.over {
             Stretch::Everywhere => true,

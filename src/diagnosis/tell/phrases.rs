@@ -121,15 +121,6 @@ pub(crate) fn amounts<'a>(d: &'a Diagnosis, name: &str) -> Vec<&'a Told> {
     }
 }
 
-/// The unit of an axis.
-pub(crate) fn axis_unit(axis: Axis) -> &'static str {
-    match axis {
-        Axis::Place => "m",
-        Axis::Time => "s",
-        Axis::Speed => "m/s",
-    }
-}
-
 /// `132 to 187 m`, digits as the length of the stretch allows.
 pub(crate) fn range(from: f64, to: f64, unit: &str) -> String {
     let fine = (to - from).abs() < 10.0;
@@ -143,7 +134,7 @@ pub(crate) fn range(from: f64, to: f64, unit: &str) -> String {
 
 /// `from 132 to 187 m (8.1 to 10.6 s)`.
 pub(crate) fn stretch(m: &Mismatch) -> String {
-    let unit = axis_unit(m.axis);
+    let unit = m.axis.unit();
     let main = range(m.from, m.to, unit);
     let known = |a: f64, b: f64| a.is_finite() && b.is_finite();
     let mut beside = Vec::new();

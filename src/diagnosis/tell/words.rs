@@ -148,7 +148,7 @@ fn parts(m: &Mismatch) -> String {
     if m.parts.len() < 2 {
         return String::new();
     }
-    let unit = crate::diagnosis::tell::phrases::axis_unit(m.axis);
+    let unit = m.axis.unit();
     let told: Vec<String> = m
         .parts
         .iter()

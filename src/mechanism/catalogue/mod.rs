@@ -48,7 +48,7 @@ pub use viscous_drag::ViscousDrag;
 use crate::mechanism::Extent;
 use crate::mechanism::{Candidate, Change, Mechanism, Unknown};
 use crate::physics::Rate;
-use crate::physics::forces::{Axis, STEPS, Shape, Stretch, Term};
+use crate::physics::forces::{Axis, Shape, Term};
 use crate::scalar::{Kind, Real};
 
 /// The prior sd of a force at the upper-quartile speed \[m/s2\].
@@ -153,7 +153,7 @@ fn along_place(extent: &Extent, amplitude: Unknown) -> Vec<Unknown> {
 
 /// A rate added along the whole run.
 fn everywhere<K: Kind>(extent: &Extent, rate: Rate<K>) -> Change<K> {
-    of_term(extent, Term::everywhere(rate))
+    Change::force(extent, Term::everywhere(rate))
 }
 
 /// A rate added between two places or times.
@@ -163,13 +163,5 @@ fn between<K: Kind>(
     axis: Axis,
     edges: [Real<K>; 2],
 ) -> Change<K> {
-    let over = Stretch::Between(axis, edges);
-    of_term(extent, Term { over, ..Term::everywhere(rate) })
-}
-
-fn of_term<K: Kind>(extent: &Extent, term: Term<K>) -> Change<K> {
-    let mut change = Change::default();
-    change.forces.terms.push(term);
-    change.forces.step = extent.duration / STEPS;
-    change
+    Change::force(extent, Term::between(axis, edges, rate))
 }
