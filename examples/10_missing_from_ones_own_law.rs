@@ -51,9 +51,7 @@ fn main() -> Result<()> {
     let seen = simulate(&truth, &[0.2, 40.0, 40.0, 0.4, 0.04], Seed::new(1))?;
     own.event = own.event.with_recording(seen[0].clone())?;
     // 3. The inference: of the model without the rougher stretch.
-    let mut options = Options::default();
-    (options.friction, options.noise) = ("lubricated".into(), "iid".into());
-    let found = diagnose(&own, &own.event, &options, &Quiet)?;
+    let found = diagnose(&own, &own.event, &Options::default(), &Quiet)?;
     println!("{}", summary(&found, 80)); // 4. The result
     Ok(())
 }

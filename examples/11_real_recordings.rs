@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use couloir::diagnosis::{
-    Diagnosis, Options, Sharing, Together, diagnose, diagnose_together, fit,
-    in_words,
+    Diagnosis, Hypothesis, Options, Sharing, Together, diagnose,
+    diagnose_together, fit, in_words,
 };
 use couloir::infer::LaplaceMixture;
 use couloir::io::{self, EventFile};
-use couloir::mechanism::catalogue::find;
+use couloir::mechanism::{Family, catalogue::find};
 use couloir::model::Assembled;
 use couloir::prelude::*;
 use couloir::prior::AnyPrior;
@@ -47,7 +47,10 @@ fn model(path: &Path, rate: f64, own: &[(&str, &str)]) -> Result<Assembled> {
 fn row(what: &str, d: &Diagnosis) {
     let i = d.improvement;
     let physics = |name: &str| {
-        let mut added = d.mechanisms.iter().filter(|m| m.kind == "physics");
+        let mut added = d
+            .mechanisms
+            .iter()
+            .filter(|m| m.kind == Hypothesis::Mechanism(Family::Physics));
         added
             .any(|m| d.selected.contains(&m.name) && name.starts_with(&m.name))
     };
@@ -104,7 +107,7 @@ fn alone(path: &Path) -> Result<()> {
 fn predicted(paths: &[PathBuf], left: usize, name: &str) -> Result<f64> {
     let others = paths.iter().enumerate().filter(|(i, _)| *i != left);
     let models = others.map(|(_, path)| model(path, RATE, &[]));
-    let together = Together::new(models.collect::<Result<_>>()?, true)?;
+    let together = Together::with_one_law(models.collect::<Result<_>>()?)?;
     let extent = together.extent();
     let found = match name {
         "" => None,
@@ -125,9 +128,8 @@ fn predicted(paths: &[PathBuf], left: usize, name: &str) -> Result<f64> {
     let rows = known.draws.thinned(400);
     for row in &rows {
         // Of the event itself only the law counts: its errors do not.
-        let mut own = row[count..count + laws].to_vec();
+        let mut own = row[..count + laws].to_vec();
         own.extend(vec![0.5; rest]);
-        own.extend(&row[..count]);
         let states = unseen.motion(&own, series.times());
         let states = states.map_err(|_| Error::inference("no flow"))?;
         for (sum, state) in mean.iter_mut().zip(states) {
@@ -152,7 +154,7 @@ fn together(paths: &[PathBuf]) -> Result<()> {
     head();
     for sharing in [Sharing::Shared, Sharing::Pooled] {
         let models = paths.iter().map(|path| model(path, RATE, &[]));
-        let all = Together::new(models.collect::<Result<_>>()?, false)?;
+        let all = Together::new(models.collect::<Result<_>>()?)?;
         let options = Options::of_all(&all, 1);
         let found = diagnose_together(&all, sharing, &options, &Quiet)?;
         row(&format!("all, {sharing:?}"), &found);

@@ -7,6 +7,7 @@ use crate::error::{Error, Result, Stop};
 use crate::infer::{
     Backend, ImportanceSampling, Inference, Map, Mode, Progress, infer,
 };
+use crate::mechanism::Role;
 use crate::model::{Assembled, Point, Posterior};
 use crate::observe::Series;
 use crate::physics::State;
@@ -190,9 +191,11 @@ fn parameters(
             let (_, prior) = priors[i];
             let curve = curve(prior, draws, i);
             // A length's prior is another wherever the stretch begins.
-            let (also, alone) = match model.ends_by(i) {
-                Some(end) => (format!(", ending by {end:.4}"), Vec::new()),
-                None => (String::new(), prior_curve(prior, &curve)),
+            let (also, alone) = match model.role(i) {
+                Role::Length { until } => {
+                    (format!(", ending by {until:.4}"), Vec::new())
+                }
+                _ => (String::new(), prior_curve(prior, &curve)),
             };
             ParameterReport {
                 name: s.name.clone(),

@@ -9,7 +9,7 @@ use std::ops::Deref;
 use crate::context::Context;
 use crate::error::Stop;
 use crate::mechanism::Change;
-use crate::noise::{Conditional, Grid, Noise};
+use crate::noise::{Conditional, Grid, Noise, Stationary};
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 
@@ -91,6 +91,9 @@ macro_rules! score_like {
             }
             fn standardise(&$self, deviate: f64) -> f64 {
                 $inner.standardise(deviate)
+            }
+            fn stationary(&$self) -> Option<Stationary> {
+                $inner.stationary()
             }
         }
     };

@@ -333,7 +333,7 @@ fn each_mechanism_gives_the_baseline_back_and_bears_every_law() {
             let mut values = usual(&with);
             let there = posterior.density(Point::Natural(&values)).unwrap();
             assert_eq!(there.rejected, None, "{about}");
-            values[own.len()] = 1e-13;
+            values[0] = 1e-13;
             let zero = posterior.density(Point::Natural(&values)).unwrap();
             let (a, b) = (zero.log_likelihood, base.log_likelihood);
             let secant = entry.name() == "velocity-weakening"
@@ -379,7 +379,7 @@ fn predicted(event: Event, label: &str, amount: f64) -> Vec<f64> {
         .unwrap();
     let posterior = Posterior::new(&model).unwrap();
     let (density, said) =
-        posterior.collect(Point::Natural(&[0.2, 1.0, amount])).unwrap();
+        posterior.collect(Point::Natural(&[amount, 0.2, 1.0])).unwrap();
     assert_eq!(density.rejected, None);
     said.predictions[0].clone()
 }

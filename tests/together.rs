@@ -10,15 +10,15 @@ use couloir::diagnosis::{
 };
 use couloir::draws::summarise;
 use couloir::infer::{Backend, LaplaceMixture, Quiet, Smc};
-use couloir::mechanism::Mechanism;
-use couloir::mechanism::catalogue::{FrictionPatch, find};
+use couloir::mechanism::catalogue::{Catalogue, FrictionPatch, find};
+use couloir::mechanism::{Mechanism, Role};
 use couloir::model::{Assembled, Model, Point, Posterior, Program, With};
 use couloir::noise::{self, Iid, Noise};
 use couloir::physics::Track;
 use couloir::physics::friction::Laws;
 use couloir::prior::AnyPrior;
 use couloir::scalar::{Plain, Real};
-use couloir::{Event, Seed, Series};
+use couloir::{Event, Result, Seed, Series};
 
 /// A slope with a patch of higher friction between 60 and 110 m of the common
 /// axis, released at some place on it; 50 values with errors of 0.3 m/s.
@@ -34,7 +34,7 @@ fn slide(name: &str, origin: f64, seed: u64) -> Assembled {
         let found = find("friction-patch", &extent, &[]).unwrap();
         model.with_mechanisms(vec![found], &BTreeMap::new()).unwrap()
     };
-    let truth = [0.25, 0.09, 0.15, 60.0, 50.0];
+    let truth = [0.15, 60.0, 50.0, 0.25, 0.09];
     let states = patch(of(event(blank))).motion(&truth, &times).unwrap();
     let mut rng = Seed::new(seed).rng();
     let errors = Iid { sigma2: Real::<Plain>::new(0.09) };
@@ -59,6 +59,14 @@ fn both() -> [Assembled; 2] {
     [slide("upper 1", 0.0, 1), slide("lower 1", 40.0, 2)]
 }
 
+/// Both under one law, or each under its own.
+fn under(events: Vec<Assembled>, one_law: bool) -> Result<Together> {
+    match one_law {
+        true => Together::with_one_law(events),
+        false => Together::new(events),
+    }
+}
+
 fn likelihood(program: &impl Program, values: &[f64]) -> f64 {
     let posterior = Posterior::new(program).unwrap();
     let density = posterior.density(Point::Natural(values)).unwrap();
@@ -78,17 +86,17 @@ fn mechanisms_of_an_event_file_are_those_put_on_from_outside() {
     let inside = having("friction-patch", &priors);
     inside.check_priors(&priors).unwrap();
     assert_eq!(
-        inside.priors().nth(2).unwrap().1.to_string(),
+        inside.priors().next().unwrap().1.to_string(),
         prior.to_string()
     );
     let (mechanism, own) = ([0.14, 61.0, 47.0], [0.26, 0.1]);
-    let a = likelihood(&outside, &[&mechanism[..], &own].concat());
-    let b = likelihood(&inside, &[&own[..], &mechanism].concat());
+    let all = [&mechanism[..], &own].concat();
+    let a = likelihood(&outside, &all);
+    let b = likelihood(&inside, &all);
     assert_eq!(a, b);
-    let zero = likelihood(&inside, &[0.26, 0.1, 0.0, 61.0, 47.0]);
+    let zero = likelihood(&inside, &[0.0, 61.0, 47.0, 0.26, 0.1]);
     assert!((zero - likelihood(&plain, &own)).abs() < 1e-9);
     let part = inside.first(20).unwrap();
-    let all = [&own[..], &mechanism].concat();
     let known = likelihood(&part, &all);
     assert!(known.is_finite() && known != b);
     assert!(inside.rest(&all).unwrap().is_none());
@@ -115,17 +123,18 @@ fn a_stretch_ends_within_the_run_unless_the_file_has_a_prior() {
     for (share, is_possible) in [(0.45, true), (0.55, false)] {
         let amounts = [0.14, half, share * extent.run];
         let a = log_prior(&outside, &[&amounts, &own]);
-        let b = log_prior(&inside, &[&own, &amounts]);
+        let b = log_prior(&inside, &[&amounts, &own]);
         assert_eq!(a.is_finite(), is_possible, "{share}");
         assert!(a == b || (a - b).abs() < 1e-12, "{a} {b}");
-        assert!(log_prior(&free, &[&own, &amounts]).is_finite());
+        assert!(log_prior(&free, &[&amounts, &own]).is_finite());
     }
-    let before = [0.26, 0.1, 0.14, half];
+    let before = [0.14, half];
     let middle =
         |model: &Assembled| model.middle(&before).unwrap() / extent.run;
     assert!(middle(&inside) < 0.3 && middle(&free) > 0.5);
-    assert_eq!(inside.ends_by(4), Some(extent.begin + extent.run));
-    assert_eq!(free.ends_by(4), None);
+    let until = extent.begin + extent.run;
+    assert_eq!(inside.role(2), Role::Length { until });
+    assert_eq!(free.role(2), Role::Other);
 }
 
 /// A slide whose model has a mechanism already, under priors of a file.
@@ -172,8 +181,8 @@ fn no_variant_of_what_a_model_has_is_looked_for() {
     let together = |label: &str| -> Vec<String> {
         let events =
             vec![having(label, &BTreeMap::new()), slide("two", 40.0, 2)];
-        let together = Together::new(events, false).unwrap();
-        let clock = together.catalogue(Sharing::Shared);
+        let together = Together::new(events).unwrap();
+        let clock = together.catalogue(&Catalogue::default(), Sharing::Shared);
         let of = |name: &str| {
             let found = clock.iter().find(|m| m.name() == name)?;
             Some(found.unknowns().into_iter().map(|u| u.name))
@@ -187,8 +196,8 @@ fn no_variant_of_what_a_model_has_is_looked_for() {
 #[test]
 fn sensors_are_shared_where_they_record_the_same() {
     let names = |events: [Assembled; 2], name: &str| -> Vec<String> {
-        let together = Together::new(events.into(), false).unwrap();
-        let all = together.catalogue(Sharing::Shared);
+        let together = Together::new(events.into()).unwrap();
+        let all = together.catalogue(&Catalogue::default(), Sharing::Shared);
         let found = all.iter().find(|m| m.name() == name).unwrap();
         found.unknowns().into_iter().map(|u| u.name).collect()
     };
@@ -216,7 +225,7 @@ fn with_nothing_shared_the_log_evidence_adds_up() {
     let [a, b] = both();
     let sum = of(&a, 1).log_evidence + of(&b, 2).log_evidence;
     let exact = likelihood(&a, &[0.3, 0.2]) + likelihood(&b, &[0.28, 0.1]);
-    let together = Together::new(both().into(), false).unwrap();
+    let together = Together::new(both().into()).unwrap();
     assert_eq!(together.labels(), ["upper", "lower"]);
     let joint = likelihood(&together, &[0.3, 0.2, 0.28, 0.1]);
     assert!((joint - exact).abs() < 1e-9);
@@ -224,7 +233,7 @@ fn with_nothing_shared_the_log_evidence_adds_up() {
     assert_eq!(joint.draws.names()[0], "upper.mu");
     let apart = (joint.log_evidence - sum).abs();
     assert!(apart < 0.1, "{} {sum}", joint.log_evidence);
-    let shared = Together::new(both().into(), true).unwrap();
+    let shared = Together::with_one_law(both().into()).unwrap();
     let posterior = Posterior::new(&shared).unwrap();
     let names: Vec<_> =
         posterior.parameters().iter().map(|p| p.name.clone()).collect();
@@ -243,8 +252,8 @@ fn what_events_have_in_common_is_integrated_as_all_at_once() {
         ("friction-patch", Sharing::Shared, true),
     ];
     for (name, sharing, one_law) in cases {
-        let together = Together::new(both().into(), one_law).unwrap();
-        let all = together.catalogue(sharing);
+        let together = under(both().into(), one_law).unwrap();
+        let all = together.catalogue(&Catalogue::default(), sharing);
         let found = all.iter().find(|m| m.name() == name).unwrap();
         let added = [found.as_ref()];
         let peaks = LaplaceMixture::default();
@@ -291,8 +300,8 @@ fn a_shared_patch_is_known_better_from_two() {
     };
     let (one, _) = width(&a, patch(&a).as_ref());
     let (other, _) = width(&b, patch(&b).as_ref());
-    let together = Together::new(both().into(), false).unwrap();
-    let all = together.catalogue(Sharing::Shared);
+    let together = Together::new(both().into()).unwrap();
+    let all = together.catalogue(&Catalogue::default(), Sharing::Shared);
     let shared = all.iter().find(|m| m.name() == "friction-patch").unwrap();
     let (joint, middle) = width(&together, shared.as_ref());
     assert!(joint < one.min(other), "{one} {other} {joint}");
@@ -301,13 +310,13 @@ fn a_shared_patch_is_known_better_from_two() {
 
 #[test]
 fn each_event_sees_its_own_change() {
-    let together = Together::new(both().into(), false).unwrap();
+    let together = Together::new(both().into()).unwrap();
     let extent = together.extent();
     let [a, b] = both().map(|model| model.event().extent());
     assert_eq!(extent.begin, a.begin.min(b.begin));
     let end = (a.begin + a.run).max(b.begin + b.run);
     assert!((extent.begin + extent.run - end).abs() < 1e-9);
-    let all = together.catalogue(Sharing::Shared);
+    let all = together.catalogue(&Catalogue::default(), Sharing::Shared);
     let clock = all.iter().find(|m| m.name() == "clock-offset").unwrap();
     let names: Vec<_> = clock.unknowns().into_iter().map(|u| u.name).collect();
     assert_eq!(names, ["upper.ahead", "lower.ahead"]);
@@ -326,10 +335,10 @@ fn each_event_sees_its_own_change() {
 
 #[test]
 fn a_pooled_amplitude_is_the_common_one_where_nothing_spreads() {
-    let together = Together::new(both().into(), true).unwrap();
+    let together = Together::with_one_law(both().into()).unwrap();
     let own = [0.28, 0.1, 0.1];
-    let pooled = together.catalogue(Sharing::Pooled);
-    let shared = together.catalogue(Sharing::Shared);
+    let pooled = together.catalogue(&Catalogue::default(), Sharing::Pooled);
+    let shared = together.catalogue(&Catalogue::default(), Sharing::Shared);
     for (pooled, shared) in pooled.iter().zip(&shared) {
         assert_eq!(pooled.label(), shared.label());
         let middle = |m: &dyn Mechanism| -> Vec<f64> {
@@ -362,7 +371,8 @@ fn events_that_cannot_share_a_law_are_refused() {
     let event = slide("other", 0.0, 3).event().clone();
     let other = Assembled::new(event, laws, noise, &BTreeMap::new()).unwrap();
     let [a, _] = both();
-    let error = Together::new(vec![a, other], true).unwrap_err();
+    let error = Together::with_one_law(vec![a, other]).unwrap_err();
     assert!(error.is_input() && error.to_string().contains("voellmy"));
-    assert!(Together::new(Vec::new(), false).unwrap_err().is_input());
+    let none = Together::<Assembled>::new(Vec::new());
+    assert!(none.unwrap_err().is_input());
 }

@@ -119,7 +119,7 @@ fn answer(case: &Case, seed: u64) -> Result<Answer> {
         .map(|recording| model_of(&recording.files))
         .collect::<Result<Vec<_>>>()?;
     let found = if models.len() > 1 {
-        let together = Together::new(models, true)?;
+        let together = Together::with_one_law(models)?;
         let options = Options::of_all(&together, seed);
         diagnose_together(&together, Sharing::Shared, &options, &Quiet)?
     } else {

@@ -124,7 +124,10 @@ impl Arguments {
     ) -> Result<(Diagnosis, Vec<String>)> {
         let odds = || self.odds.iter().cloned().collect::<Odds>();
         if models.len() > 1 {
-            let together = Together::new(models, self.one_law)?;
+            let together = match self.one_law {
+                true => Together::with_one_law(models)?,
+                false => Together::new(models)?,
+            };
             let mut options = Options::of_all(&together, self.seed);
             options.odds = odds();
             let sharing =

@@ -12,26 +12,27 @@ use crate::diagnosis::decide::judge::{
 };
 use crate::diagnosis::evidence::attribute::attribute;
 use crate::diagnosis::evidence::fit::Fit;
-use crate::diagnosis::findings::{Diagnosis, Verdict};
+use crate::diagnosis::findings::{Diagnosis, NONE, UNKNOWN, Verdict};
 use crate::diagnosis::locate::{FreeForce, free_fit, locate_all};
 use crate::diagnosis::options::Options;
 use crate::diagnosis::tell::paste::corrected;
 use crate::diagnosis::tell::place::{mark, mismatch};
-use crate::diagnosis::together::{Sharing, Together};
+use crate::diagnosis::together::Sharing;
 use crate::draws::summarise;
 use crate::error::{Error, Result};
 use crate::infer::Progress;
 use crate::mechanism::Mechanism;
-use crate::mechanism::catalogue::catalogue;
-use crate::model::{Assembled, Program};
+use crate::mechanism::catalogue::is_held;
+use crate::model::{Member, Program, Together, declared_blocks};
 use crate::observe::{Event, Extent};
 use crate::seed::Seed;
 
 /// Finds where a model and a recording differ and what was left out.
 ///
 /// # Errors
-/// An improper prior, odds of what is not weighed, an event without a
-/// recording, or a model that fails.
+/// An improper prior, odds of what is not weighed, a mechanism of one's own
+/// that cannot be told from others, an event without a recording, or a model
+/// that fails.
 pub fn diagnose<P: Program>(
     program: &P,
     event: &Event,
@@ -39,25 +40,32 @@ pub fn diagnose<P: Program>(
     progress: &dyn Progress,
 ) -> Result<Diagnosis> {
     let extent = event.extent();
-    let all = catalogue(&extent, &options.blocks);
+    options.catalogue.check(&extent, &[NONE, UNKNOWN])?;
+    let own = declared_blocks(program)?;
+    let held = [&own[..], &options.blocks].concat();
+    let all = options.catalogue.of(&extent, &held);
     Subject { program, events: vec![event], extent, all }
-        .diagnose(options, progress)
+        .diagnose(&options.of_blocks(&own), progress)
 }
 
-/// Finds where several recordings differ from one model and what was left out
-/// of all of them; evidence adds up.
+/// Finds where several recordings differ from their models and what was left
+/// out of all of them; evidence adds up.
 ///
 /// # Errors
 /// As [`diagnose`].
-pub fn diagnose_together(
-    program: &Together,
+pub fn diagnose_together<M: Member>(
+    program: &Together<M>,
     sharing: Sharing,
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<Diagnosis> {
-    let events = program.events().iter().map(Assembled::event).collect();
-    let (extent, all) = (program.extent(), program.catalogue(sharing));
-    Subject { program, events, extent, all }.diagnose(options, progress)
+    let (events, extent) = (program.events().collect(), program.extent());
+    options.catalogue.check(&extent, &[NONE, UNKNOWN])?;
+    let mut all = program.catalogue(&options.catalogue, sharing);
+    all.retain(|m| !is_held(m.as_ref(), &options.blocks));
+    let own = declared_blocks(program)?;
+    Subject { program, events, extent, all }
+        .diagnose(&options.of_blocks(&own), progress)
 }
 
 /// A model with its events and what may be missing from it.
@@ -184,7 +192,7 @@ impl<P: Program> Subject<'_, P> {
             improvement: improvement(none, fit, &old, &new),
             parameters: told(&summarise(&fit.draws), None)
                 .into_iter()
-                .filter(|p| !p.name.starts_with("unknown."))
+                .filter(|p| p.within(UNKNOWN).is_none())
                 .collect(),
             pictured: pictured(&self.events, &old, &new, after.is_some()),
             draws: Some(fit.draws.clone()),

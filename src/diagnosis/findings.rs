@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 use crate::diagnosis::locate::FreeForce;
 use crate::draws::Draws;
-use crate::mechanism::Noun;
+use crate::mechanism::{Family, Noun};
 use crate::physics::forces::Axis;
 use crate::predict::Bands;
 
@@ -70,10 +70,10 @@ pub struct Baseline {
     pub shapiro_wilk_p: f64,
     /// Posterior predictive p of the largest residual.
     pub predictive_p: f64,
-    /// The sd of the errors themselves, correlated or not, beside the
-    /// innovations'; where the noise is an autoregression.
+    /// The standard deviation of the first recording's errors, where each
+    /// depends on those before it.
     pub stationary_sd: Option<f64>,
-    /// The sd of the innovations; where the noise is an autoregression.
+    /// That of their innovations.
     pub innovation_sd: Option<f64>,
     /// The known error of a value, where the recording gives one.
     pub instrument: Option<f64>,
@@ -107,6 +107,34 @@ impl Verdict {
         }
     }
 }
+
+/// What sort of explanation of a recording something is.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Hypothesis {
+    /// The model as it was: nothing is missing.
+    #[default]
+    Baseline,
+    /// A mechanism of this family is missing.
+    Mechanism(Family),
+    /// A force is missing that no mechanism describes.
+    Unknown,
+}
+
+impl Hypothesis {
+    /// Its kind in `diagnosis.json`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Baseline => NONE,
+            Self::Mechanism(family) => family.name(),
+            Self::Unknown => UNKNOWN,
+        }
+    }
+}
+
+/// The name of the model as it was among the mechanisms.
+pub(crate) const NONE: &str = "none";
+/// The name of the free-form force among the mechanisms.
+pub(crate) const UNKNOWN: &str = "unknown";
 
 /// A stretch in which simulation and recording differ.
 #[derive(Debug, Clone)]
@@ -158,6 +186,13 @@ pub struct Told {
     pub q95: f64,
 }
 
+impl Told {
+    /// Its own name, where it is a parameter of a mechanism of this name.
+    pub(crate) fn within(&self, mechanism: &str) -> Option<&str> {
+        self.name.strip_prefix(mechanism)?.strip_prefix('.')
+    }
+}
+
 /// A mechanism as the evidence judges it.
 #[derive(Debug, Clone, Default)]
 pub struct Judged {
@@ -165,8 +200,8 @@ pub struct Judged {
     pub name: String,
     /// What it is called in a sentence.
     pub noun: Noun,
-    /// Its kind: none, physics, start, measurement, noise, unknown.
-    pub kind: &'static str,
+    /// What sort of explanation it is.
+    pub kind: Hypothesis,
     /// Its probability.
     pub probability: f64,
     /// ln of its evidence, averaged over its variants.
@@ -206,7 +241,8 @@ pub struct Improvement {
     /// The least error that the motion reaches, whatever priors and noise
     /// say; NaN where it was not searched.
     pub least_squares: Pair,
-    /// The sd of the errors themselves under AR(1) noise; NaN under others.
+    /// The standard deviation of the first recording's errors, where each
+    /// depends on those before it; NaN where none does.
     pub stationary_sd: Pair,
     /// Expected log predictive density by PSIS-LOO.
     pub elpd: Pair,
@@ -305,7 +341,7 @@ fn mismatch_json(m: &Mismatch) -> Value {
 
 fn judged_json(m: &Judged) -> Value {
     let mut value = json!({
-        "name": m.name, "kind": m.kind, "probability": m.probability,
+        "name": m.name, "kind": m.kind.name(), "probability": m.probability,
         "log_evidence": m.log_evidence, "log_evidence_se": m.se,
         "log10_bayes_factor": m.log10_bayes_factor, "says": m.says,
         "parameters": parameters_json(&m.parameters),

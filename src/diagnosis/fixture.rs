@@ -3,8 +3,8 @@
 
 use super::*;
 use crate::diagnosis::locate::Process;
-use crate::mechanism::Noun;
 use crate::mechanism::catalogue::find;
+use crate::mechanism::{Family, Noun};
 use crate::observe::{Event, Series};
 use crate::physics::Track;
 use crate::physics::forces::Axis;
@@ -24,7 +24,7 @@ pub(super) fn told(name: &str, unit: &str, q50: f64, sd: f64) -> Told {
 
 fn judged(
     name: &str,
-    kind: &'static str,
+    kind: Hypothesis,
     probability: f64,
     log10_bayes_factor: f64,
     parameters: Vec<Told>,
@@ -68,47 +68,53 @@ fn patch() -> Vec<Told> {
 
 fn mechanisms() -> Vec<Judged> {
     let mut all = vec![
-        judged("friction-patch", "physics", 0.93, 21.3, patch()),
+        judged(
+            "friction-patch",
+            Hypothesis::Mechanism(Family::Physics),
+            0.93,
+            21.3,
+            patch(),
+        ),
         judged(
             "entrainment",
-            "physics",
+            Hypothesis::Mechanism(Family::Physics),
             0.05,
             20.0,
             vec![told("growth", "1/m", 0.0031, 0.0004)],
         ),
         judged(
             "surge",
-            "physics",
+            Hypothesis::Mechanism(Family::Physics),
             0.017,
             19.6,
             vec![told("force", "m/s2", -0.91, 0.1)],
         ),
-        judged("unknown", "unknown", 0.002, 18.6, vec![]),
+        judged("unknown", Hypothesis::Unknown, 0.002, 18.6, vec![]),
         judged(
             "clock-offset",
-            "measurement",
+            Hypothesis::Mechanism(Family::Measurement),
             0.0006,
             18.1,
             vec![told("ahead", "s", 0.82, 0.08)],
         ),
         judged(
             "ar1",
-            "noise",
+            Hypothesis::Mechanism(Family::Errors),
             0.0004,
             17.9,
             vec![told("phi", "1", 0.97, 0.01)],
         ),
-        judged("none", "none", 1e-20, 0.0, vec![]),
+        judged("none", Hypothesis::Baseline, 1e-20, 0.0, vec![]),
     ];
     let rest = [
-        ("initial-velocity", "start", 3.1),
-        ("release-position", "start", 2.2),
-        ("friction-step", "physics", 1.2),
-        ("friction-hardening", "physics", 0.9),
-        ("cohesion", "physics", -0.4),
-        ("viscous-drag", "physics", -0.7),
-        ("velocity-weakening", "physics", -0.8),
-        ("heavy-tails", "noise", -0.9),
+        ("initial-velocity", Hypothesis::Mechanism(Family::Start), 3.1),
+        ("release-position", Hypothesis::Mechanism(Family::Start), 2.2),
+        ("friction-step", Hypothesis::Mechanism(Family::Physics), 1.2),
+        ("friction-hardening", Hypothesis::Mechanism(Family::Physics), 0.9),
+        ("cohesion", Hypothesis::Mechanism(Family::Physics), -0.4),
+        ("viscous-drag", Hypothesis::Mechanism(Family::Physics), -0.7),
+        ("velocity-weakening", Hypothesis::Mechanism(Family::Physics), -0.8),
+        ("heavy-tails", Hypothesis::Mechanism(Family::Errors), -0.9),
     ];
     all.extend(rest.map(|(name, kind, bf)| {
         judged(name, kind, 1e-9, bf, vec![told("amount", "1", 0.1, 0.1)])

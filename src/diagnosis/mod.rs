@@ -15,13 +15,14 @@ mod tell;
 mod tests;
 mod together;
 
+pub use crate::model::Together;
 pub use decide::judge::Odds;
 pub use diagnose::{diagnose, diagnose_together};
 pub use evidence::attribute::{Attribution, attribute, pair};
 pub use evidence::fit::{Fit, fit};
 pub use findings::{
-    Baseline, Corrected, Diagnosis, Improvement, Judged, Mismatch, Pair,
-    Pictured, Rival, Told, Verdict,
+    Baseline, Corrected, Diagnosis, Hypothesis, Improvement, Judged, Mismatch,
+    Pair, Pictured, Rival, Told, Verdict,
 };
 pub use locate::{CELLS, FreeForce, locate};
 pub use options::Options;
@@ -29,4 +30,4 @@ pub use tell::page::page;
 pub use tell::pictures::pictures;
 pub use tell::summary::summary;
 pub use tell::words::in_words;
-pub use together::{Sharing, Together};
+pub use together::Sharing;

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use crate::diagnosis::decide::judge::Odds;
 use crate::diagnosis::tell::paste::declarations;
-use crate::diagnosis::together::Together;
 use crate::mechanism::Mechanism;
-use crate::model::Assembled;
+use crate::mechanism::catalogue::Catalogue;
+use crate::model::{Assembled, Together};
+use crate::noise::is_noise;
 
 /// What to know of a model before it is diagnosed.
 #[derive(Debug, Clone, Default)]
@@ -15,12 +16,15 @@ pub struct Options {
     pub seed: u64,
     /// The user's odds.
     pub odds: Odds,
-    /// The friction law's name, a sum of blocks: "coulomb + turbulent".
+    /// The friction law's name, a sum of blocks: "coulomb + turbulent"; empty
+    /// for the names that the model declares.
     pub friction: String,
-    /// The noise's name: "ar(1)".
+    /// The noise's name: "ar(1)"; empty for the one that the model declares.
     pub noise: String,
-    /// What is not looked for, since the model has it: the names of its laws,
-    /// of its noise (without its order) and of its mechanisms.
+    /// What is looked for: the mechanisms that come along, and further ones.
+    pub catalogue: Catalogue,
+    /// What is not looked for besides the laws, noises and mechanisms that
+    /// the model declares, by their names.
     pub blocks: Vec<String>,
     /// The mechanisms that the model has already.
     pub mechanisms: Vec<Arc<dyn Mechanism>>,
@@ -33,19 +37,18 @@ impl Options {
     pub fn of(model: &Assembled, seed: u64) -> Self {
         Self {
             seed,
-            odds: Odds::new(),
             friction: model.friction(),
             noise: model.noise(),
-            blocks: model.blocks(),
             mechanisms: model.mechanisms().cloned().collect(),
             declarations: declarations(model),
+            ..Self::default()
         }
     }
 
     /// Those of several events under one model.
-    pub fn of_all(together: &Together, seed: u64) -> Self {
+    pub fn of_all(together: &Together<Assembled>, seed: u64) -> Self {
         let mut all = Self { seed, ..Self::default() };
-        for event in together.events() {
+        for event in together.members() {
             for (text, own) in [
                 (&mut all.friction, event.friction()),
                 (&mut all.noise, event.noise()),
@@ -61,7 +64,20 @@ impl Options {
                     all.mechanisms.push(Arc::clone(mechanism));
                 }
             }
-            all.blocks.extend(event.blocks());
+        }
+        all
+    }
+
+    /// The same, with what a model's own blocks say of it.
+    pub(crate) fn of_blocks(&self, blocks: &[String]) -> Self {
+        let mut all = self.clone();
+        let (errors, laws): (Vec<_>, Vec<_>) =
+            blocks.iter().cloned().partition(|name| is_noise(name));
+        if all.friction.is_empty() {
+            all.friction = laws.join(" + ");
+        }
+        if all.noise.is_empty() {
+            all.noise = errors.join(" | ");
         }
         all
     }

@@ -44,6 +44,27 @@ impl fmt::Display for Family {
     }
 }
 
+/// What an unknown is to its mechanism: what a search for its value needs to
+/// know.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Role {
+    /// How much of the mechanism there is; at zero there is none.
+    Amplitude,
+    /// Where, or when, it begins: a place \[m\] or a moment \[s\].
+    Edge(Axis),
+    /// How long the stretch is that begins at the edge just before it.
+    ///
+    /// Its prior is uniform and reaches to what is left of the run, or to
+    /// twice the shortest length where less is left: what differs up to the
+    /// last value is a step.
+    Length {
+        /// Where the stretch ends at the latest \[m or s\].
+        until: f64,
+    },
+    /// Anything else, such as a scale.
+    Other,
+}
+
 /// Something unknown about a mechanism.
 #[derive(Debug, Clone)]
 pub struct Unknown {
@@ -53,21 +74,64 @@ pub struct Unknown {
     pub unit: &'static str,
     /// Its prior, scaled to the event.
     pub prior: AnyPrior,
-    /// Where a stretch ends at the latest whose length this is; the unknown
-    /// before it is where it begins. The prior, a uniform one, reaches to what
-    /// is left then, or to twice the shortest length where less is left. What
-    /// differs up to the last value is a step.
-    pub until: Option<f64>,
+    /// What it is to the mechanism.
+    pub role: Role,
 }
 
 impl Unknown {
-    /// One that is no stretch's length.
-    pub fn new(
+    /// How much of a mechanism there is.
+    pub fn amplitude(
         name: impl Into<String>,
         unit: &'static str,
         prior: AnyPrior,
     ) -> Self {
-        Self { name: name.into(), unit, prior, until: None }
+        Self { role: Role::Amplitude, ..Self::other(name, unit, prior) }
+    }
+
+    /// Where a mechanism begins, uniform between two places \[m\] or two
+    /// moments \[s\].
+    pub fn edge(
+        name: impl Into<String>,
+        axis: Axis,
+        [begin, end]: [f64; 2],
+    ) -> Self {
+        let prior = AnyPrior::Uniform(begin, end);
+        Self {
+            role: Role::Edge(axis),
+            ..Self::other(name, axis.unit(), prior)
+        }
+    }
+
+    /// How long the stretch is that begins at the edge before it: uniform from
+    /// the shortest length to what is left until the run's end.
+    pub fn length(
+        name: impl Into<String>,
+        axis: Axis,
+        [shortest, longest]: [f64; 2],
+        until: f64,
+    ) -> Self {
+        let prior = AnyPrior::Uniform(shortest, longest);
+        Self {
+            role: Role::Length { until },
+            ..Self::other(name, axis.unit(), prior)
+        }
+    }
+
+    /// Something else that is unknown.
+    pub fn other(
+        name: impl Into<String>,
+        unit: &'static str,
+        prior: AnyPrior,
+    ) -> Self {
+        Self { name: name.into(), unit, prior, role: Role::Other }
+    }
+
+    /// Whether its prior reaches to both sides of zero.
+    pub fn is_signed(&self) -> bool {
+        let beyond = |p: f64, sign: f64| {
+            self.prior.quantile(p).is_none_or(|x| x * sign > 0.0)
+        };
+        beyond(0.0, -1.0) && beyond(1.0, 1.0)
     }
 }
 
@@ -239,3 +303,18 @@ macro_rules! change_kind {
     };
 }
 change_kind!(Plain, Grad<2>, Grad<4>, Grad<8>, Grad<16>);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_prior_on_both_sides_of_zero_is_signed() {
+        let signed = |prior| Unknown::amplitude("a", "1", prior).is_signed();
+        assert!(signed(AnyPrior::Normal(0.0, 1.5)));
+        assert!(signed(AnyPrior::Uniform(-1.0, 2.0)));
+        assert!(!signed(AnyPrior::HalfNormal(1.0)));
+        assert!(!signed(AnyPrior::Uniform(0.0, 0.5)));
+        assert!(!signed(AnyPrior::LogNormal(0.0, 0.3)));
+    }
+}

@@ -5,8 +5,10 @@
 //! changes nothing. It rides on every declared block, so that no law, no
 //! reading and no noise of a model escapes it.
 
+use super::Extent;
 use crate::noise::Alteration;
 use crate::physics::Forces;
+use crate::physics::forces::{STEPS, Term};
 use crate::scalar::{Kind, Real};
 
 /// A change of a model.
@@ -81,6 +83,14 @@ impl<K: Kind> Default for Change<K> {
 }
 
 impl<K: Kind> Change<K> {
+    /// One force more on the mass, over a run of this extent.
+    pub fn force(extent: &Extent, term: Term<K>) -> Self {
+        let mut change = Self::default();
+        change.forces.terms.push(term);
+        change.forces.step = extent.duration / STEPS;
+        change
+    }
+
     /// Whether the motion, or when it is looked at, is changed.
     pub fn moves(&self) -> bool {
         let amounts =

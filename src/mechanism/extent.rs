@@ -24,3 +24,24 @@ pub struct Extent {
     /// Whether a mean over a window can be formed of what is recorded.
     pub averages: bool,
 }
+
+impl Extent {
+    /// That of some event to which every mechanism applies.
+    pub(crate) const EVERYTHING: Self = Self {
+        begin: 0.0,
+        run: 1.0,
+        duration: 1.0,
+        speed: 1.0,
+        step: 0.1,
+        behind: 0.0,
+        start_speed: 0.0,
+        carried: true,
+        bends: true,
+        averages: true,
+    };
+
+    /// The same of an event to which every mechanism applies.
+    pub(crate) fn of_everything(&self) -> Self {
+        Self { carried: true, bends: true, averages: true, ..*self }
+    }
+}

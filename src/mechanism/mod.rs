@@ -16,7 +16,7 @@ mod pooled;
 
 pub use candidate::{
     Candidate, ChangeKind, ChangeOf, Concern, Family, Mechanism, Missing,
-    Noun, Reach, Unknown,
+    Noun, Reach, Role, Unknown,
 };
 pub use change::{Change, Covariate};
 pub use extent::Extent;

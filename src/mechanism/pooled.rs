@@ -46,11 +46,11 @@ impl Pooled {
             _ => (false, RATIO, "1"),
         };
         let spread = AnyPrior::HalfNormal(scale);
-        unknowns.push(Unknown::new("spread", unit, spread));
+        unknowns.push(Unknown::other("spread", unit, spread));
         let common = unknowns.len();
         unknowns.extend(labels.iter().map(|label| {
             let prior = AnyPrior::Normal(0.0, 1.0);
-            of_event(&Unknown::new("deviation", "1", prior), label)
+            of_event(&Unknown::other("deviation", "1", prior), label)
         }));
         let inner = Arc::from(inner);
         Self { inner, unknowns, common, first: 0, signed }

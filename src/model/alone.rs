@@ -1,10 +1,10 @@
 //! One of several events of a program, and what all of them have in common.
 
-use super::amount::Amount;
+use super::listener::Collector;
 use super::number::Number;
-use super::program::Program;
-use super::run::Run;
-use crate::error::Outcome;
+use super::program::{Model, Point, Program};
+use super::run::{Entered, Run};
+use crate::error::{Outcome, Result};
 use crate::mechanism::Unknown;
 
 /// A program for one of its events alone; itself a program.
@@ -23,7 +23,7 @@ impl<'a, P: Program> Alone<'a, P> {
 
 impl<P: Program> Program for Alone<'_, P> {
     fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
-        self.program.run_event(self.event, run)
+        run.entering(Entered::Only(self.event), |run| self.program.run(run))
     }
 }
 
@@ -32,21 +32,30 @@ impl<P: Program> Program for Alone<'_, P> {
 #[derive(Debug)]
 pub struct Common<'a, P> {
     program: &'a P,
-    added: Vec<(String, Unknown)>,
+    added: Vec<Unknown>,
 }
 
 impl<'a, P: Program> Common<'a, P> {
     /// What a program's events have in common, with what mechanisms add to
     /// it, by name.
-    pub fn new(program: &'a P, added: Vec<(String, Unknown)>) -> Self {
+    pub fn new(program: &'a P, added: Vec<Unknown>) -> Self {
         Self { program, added }
+    }
+
+    /// How many parameters they are.
+    ///
+    /// # Errors
+    /// A model that fails.
+    pub fn dimension(&self) -> Result<usize> {
+        let mut collector = Collector::default();
+        self.evaluate(Point::Middle, Some(&mut collector))?;
+        Ok(collector.collected.names.len())
     }
 }
 
 impl<P: Program> Program for Common<'_, P> {
     fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
-        let added = self.added.iter();
-        run.amounts(added.map(|(name, unknown)| Amount::of(name, unknown)))?;
-        self.program.run_common(run)
+        run.amounts(&self.added)?;
+        run.entering(Entered::Nothing, |run| self.program.run(run))
     }
 }

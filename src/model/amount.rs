@@ -4,33 +4,20 @@ use super::number::Number;
 use super::run::{Label, Run};
 use crate::block::List;
 use crate::error::Stop;
-use crate::mechanism::Unknown;
+use crate::mechanism::{Role, Unknown};
 use crate::prior::{AnyPrior, Prior as _, Uniform};
 use crate::scalar::{Kind, Plain, Real};
 
-/// A parameter of a mechanism; `until` as of its [`Unknown`].
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Amount<'a> {
-    pub(super) label: Label<'a>,
-    pub(super) prior: AnyPrior,
-    pub(super) until: Option<f64>,
-}
-
-impl<'a> Amount<'a> {
-    pub(super) fn of(name: &'a str, unknown: &Unknown) -> Self {
-        let Unknown { unit, prior, until, .. } = *unknown;
-        Self { label: Label::new(name, unit), prior, until }
-    }
-
+impl Unknown {
     /// The prior of a length that has to end within the run, given the amount
     /// before it, where its stretch begins; `None` where its own prior holds.
     fn left<K: Kind>(&self, before: Option<Real<K>>) -> Option<Uniform<K>> {
-        let (AnyPrior::Uniform(shortest, _), Some(end)) =
-            (self.prior, self.until)
+        let (AnyPrior::Uniform(shortest, _), Role::Length { until }) =
+            (self.prior, self.role)
         else {
             return None;
         };
-        let left = Real::new(end) - before?;
+        let left = Real::new(until) - before?;
         // At the very end the shortest one has to have room.
         let least = Real::new(2.0 * shortest);
         let longest = if left > least { left } else { least };
@@ -39,7 +26,7 @@ impl<'a> Amount<'a> {
 
     /// The middle of its prior, given the value before it; `None` for a flat
     /// one.
-    pub(super) fn middle(&self, before: Option<f64>) -> Option<f64> {
+    pub(crate) fn middle(&self, before: Option<f64>) -> Option<f64> {
         match self.left(before.map(Real::<Plain>::new)) {
             Some(left) => left.quantile(0.5),
             None => self.prior.quantile(0.5),
@@ -49,28 +36,21 @@ impl<'a> Amount<'a> {
 
 impl<K: Number> Run<'_, K> {
     /// The parameters of mechanisms, in order.
-    pub(super) fn amounts<'a>(
+    pub(super) fn amounts<'u>(
         &mut self,
-        all: impl IntoIterator<Item = Amount<'a>>,
+        all: impl IntoIterator<Item = &'u Unknown>,
     ) -> Result<List<Real<K>>, Stop> {
         let mut values = List::new();
-        for amount in all {
-            let value = self.amount(amount, values.last())?;
-            values.push(value);
+        for unknown in all {
+            let label = Label::new(&unknown.name, unknown.unit);
+            // An edge comes just before the length of its stretch.
+            let value = match unknown.left(values.last().copied()) {
+                Some(left) => self.scalar(label, left),
+                None => self.scalar(label, unknown.prior),
+            };
+            values.push(value?);
         }
         Ok(values)
-    }
-
-    /// `before` is the amount before it, where a stretch begins.
-    fn amount(
-        &mut self,
-        amount: Amount<'_>,
-        before: Option<&Real<K>>,
-    ) -> Result<Real<K>, Stop> {
-        match amount.left(before.copied()) {
-            Some(left) => self.scalar(amount.label, left),
-            None => self.scalar(amount.label, amount.prior),
-        }
     }
 }
 
@@ -79,6 +59,7 @@ mod tests {
     use super::*;
     use crate::error::Outcome;
     use crate::model::{Point, Posterior, Program};
+    use crate::physics::forces::Axis;
     use crate::seed::Seed;
 
     /// A stretch from somewhere in 0 to 10 on, at least 1 long.
@@ -86,13 +67,12 @@ mod tests {
 
     impl Program for Stretch {
         fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
-            let amount = |name, low, until| Amount {
-                label: Label::new(name, "m"),
-                prior: AnyPrior::Uniform(low, 10.0),
-                until,
-            };
-            let from = amount("from", 0.0, None);
-            run.amounts([from, amount("length", 1.0, Some(10.0))]).map(|_| ())
+            let axis = Axis::Place;
+            run.amounts(&[
+                Unknown::edge("from", axis, [0.0, 10.0]),
+                Unknown::length("length", axis, [1.0, 10.0], 10.0),
+            ])
+            .map(|_| ())
         }
     }
 

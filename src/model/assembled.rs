@@ -4,16 +4,15 @@
 //! the command runs.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 use std::sync::Arc;
 
-use super::amount::Amount;
+use super::added::Added;
 use super::number::Number;
 use super::program::Program;
-use super::run::{Label, Run};
+use super::run::Run;
 use crate::block::{Field, List};
 use crate::error::{Error, Outcome, Result, Stop};
-use crate::mechanism::{Change, Mechanism};
+use crate::mechanism::{Change, Mechanism, Role, Unknown};
 use crate::noise::{self, NoiseEntry, Spacing};
 use crate::observe::{Event, Quantity};
 use crate::physics::friction::LawSum;
@@ -23,34 +22,17 @@ use crate::scalar::{Plain, Real};
 
 /// One event under a sum of named laws with a named noise, and under the
 /// changes of mechanisms where there are some.
+///
+/// The mechanisms' parameters come first, then the laws', then the noise's.
 #[derive(Debug)]
 pub struct Assembled {
     event: Event,
     friction: LawSum,
     noise: Box<dyn NoiseEntry>,
-    /// Those of the laws, of the noise, and of the mechanisms.
-    unknowns: Vec<Unknown>,
+    added: Added<Arc<dyn Mechanism>>,
+    /// Of the laws, then of the noise.
+    own: Vec<Unknown>,
     laws: usize,
-    /// Each with how many parameters it has.
-    mechanisms: Vec<(Arc<dyn Mechanism>, usize)>,
-}
-
-/// A parameter with its prior.
-#[derive(Debug, Clone)]
-struct Unknown {
-    name: String,
-    unit: String,
-    prior: AnyPrior,
-    /// As of a mechanism's unknown.
-    until: Option<f64>,
-}
-
-impl Unknown {
-    fn amount(&self) -> Amount<'_> {
-        let Self { name, unit, prior, until } = self;
-        let label = Label::new(name, unit);
-        Amount { label, prior: *prior, until: *until }
-    }
 }
 
 impl Assembled {
@@ -77,20 +59,15 @@ impl Assembled {
                 Some(prior) => *prior,
                 None => default_prior(field, &event)?,
             };
-            unknowns.push(Unknown {
-                name: name.clone(),
-                unit: unit_of(field, unit),
-                prior,
-                until: None,
-            });
+            let unit = unit_of(field, unit);
+            unknowns.push(Unknown::other(name, unit, prior));
         }
         check_uneven(&event, noise.as_ref(), &fields, &unknowns)?;
-        let laws = friction.dimension();
-        let mechanisms = Vec::new();
-        Ok(Self { event, friction, noise, unknowns, laws, mechanisms })
+        let (laws, added) = (friction.dimension(), Added::default());
+        Ok(Self { event, friction, noise, added, own: unknowns, laws })
     }
 
-    /// The same model with mechanisms. Their parameters come after its own,
+    /// The same model with mechanisms. Their parameters come before its own,
     /// each named `mechanism.parameter`; priors are looked for by that name.
     ///
     /// # Errors
@@ -102,34 +79,32 @@ impl Assembled {
     ) -> Result<Self> {
         for mechanism in mechanisms {
             let name = mechanism.name();
-            if self.mechanisms.iter().any(|(m, _)| m.name() == name) {
+            if self.mechanisms().any(|m| m.name() == name) {
                 return Err(Error::input(format!(
                     "{name:?} is there twice; expected each mechanism once, \
                      in one variant: drop one of them"
                 )));
             }
-            let added = mechanism.unknowns();
-            self.mechanisms.push((Arc::from(mechanism), added.len()));
-            self.unknowns.extend(added.into_iter().map(|unknown| {
-                let name = format!("{name}.{}", unknown.name);
-                let (prior, until) = match priors.get(&name) {
-                    Some(given) => (*given, None),
-                    None => (unknown.prior, unknown.until),
-                };
-                Unknown { name, unit: unknown.unit.to_owned(), prior, until }
-            }));
+            self.added.push(Arc::from(mechanism));
+        }
+        for unknown in self.added.unknowns_mut() {
+            let Some(given) = priors.get(&unknown.name) else { continue };
+            unknown.prior = *given;
+            if let Role::Length { .. } = unknown.role {
+                unknown.role = Role::Other;
+            }
         }
         Ok(self)
     }
 
-    /// The same model with a label before the name of each parameter from
-    /// the `from`-th on, for use beside others.
-    #[must_use]
-    pub fn labelled(mut self, label: &str, from: usize) -> Self {
-        for unknown in self.unknowns.iter_mut().skip(from) {
-            unknown.name = format!("{label}.{}", unknown.name);
-        }
-        self
+    /// All parameters, in order.
+    fn unknowns(&self) -> impl Iterator<Item = &Unknown> {
+        self.added.unknowns().iter().chain(&self.own)
+    }
+
+    /// How many parameters the mechanisms have; they come first.
+    fn added(&self) -> usize {
+        self.added.unknowns().len()
     }
 
     /// The priors of parameters that the model does not have.
@@ -139,7 +114,7 @@ impl Assembled {
     ) -> Vec<&'p str> {
         let fields = fields(&self.friction, self.noise.as_ref());
         let known = |key: &str| {
-            self.unknowns.iter().any(|unknown| unknown.name == key)
+            self.unknowns().any(|unknown| unknown.name == key)
                 || fields
                     .iter()
                     .any(|(_, own, field)| key == own || key == field.name)
@@ -159,7 +134,7 @@ impl Assembled {
             None => Ok(()),
             Some(key) => {
                 let names: Vec<_> =
-                    self.unknowns.iter().map(|u| u.name.as_str()).collect();
+                    self.unknowns().map(|u| u.name.as_str()).collect();
                 Err(Error::input(format!(
                     "priors.{key}: the model has no parameter {key:?}; it \
                      has {}",
@@ -179,9 +154,9 @@ impl Assembled {
             event: self.event.first(count)?,
             friction: self.friction.clone(),
             noise: noise::parse(&self.noise.name())?,
-            unknowns: self.unknowns.clone(),
+            added: self.added.clone(),
+            own: self.own.clone(),
             laws: self.laws,
-            mechanisms: self.mechanisms.clone(),
         })
     }
 
@@ -202,7 +177,7 @@ impl Assembled {
 
     /// Its mechanisms.
     pub fn mechanisms(&self) -> impl Iterator<Item = &Arc<dyn Mechanism>> {
-        self.mechanisms.iter().map(|(mechanism, _)| mechanism)
+        self.added.each()
     }
 
     /// The labels of its mechanisms.
@@ -215,29 +190,29 @@ impl Assembled {
     pub fn blocks(&self) -> Vec<String> {
         let laws = self.friction.terms().iter().map(|law| law.name());
         let noise = self.noise.name();
-        let noise = noise.split('(').next().unwrap_or_default();
         let added = self.mechanisms().map(|m| m.name());
-        laws.chain([noise]).chain(added).map(str::to_owned).collect()
+        let all = laws.chain([without_order(&noise)]).chain(added);
+        all.map(str::to_owned).collect()
     }
 
     /// Whether the parameter of this index says how the mass moves, and not
     /// only how it is recorded.
     pub fn is_of_motion(&self, index: usize) -> bool {
-        index < self.laws || index >= self.unknowns.len() - self.added()
+        index < self.added() + self.laws
     }
 
-    /// How many parameters the mechanisms have; they come last.
-    fn added(&self) -> usize {
-        self.mechanisms.iter().map(|(_, count)| count).sum()
-    }
-
-    /// How many of the parameters are the noise's; they come after the
-    /// friction law's.
+    /// How many of the parameters are the noise's; they come last.
     pub fn noise_dimension(&self) -> usize {
         self.noise.parameters().len()
     }
 
-    /// How many of the parameters are the friction law's; they come first.
+    /// The field of the noise that each of these is a value of.
+    pub(crate) fn noise_fields(&self) -> impl Iterator<Item = Field> {
+        self.noise.parameters().into_iter().map(|(_, field)| field)
+    }
+
+    /// How many of the parameters are the friction law's; they come
+    /// after those of the mechanisms.
     pub fn friction_dimension(&self) -> usize {
         self.laws
     }
@@ -276,50 +251,46 @@ impl Assembled {
 
     /// The change that the mechanisms make with values as named.
     fn change_with(&self, natural: &[f64]) -> Result<Change<Plain>, Stop> {
-        let own = self.unknowns.len() - self.added();
-        let amounts = natural.get(own..).unwrap_or_default();
-        if amounts.len() < self.added() {
+        let Some(amounts) = natural.get(..self.added()) else {
             return Err(Stop::Fail(Error::inference(format!(
                 "{} values for {} parameters",
                 natural.len(),
-                self.unknowns.len()
+                self.unknowns().count()
             ))));
-        }
+        };
         let amounts: Vec<_> = amounts.iter().map(|&x| Real::new(x)).collect();
-        Ok(self.change(&amounts))
-    }
-
-    fn change<K: Number>(&self, amounts: &[Real<K>]) -> Change<K> {
-        let mut rest = amounts;
-        let mut change = Change::default();
-        for (mechanism, count) in &self.mechanisms {
-            let (values, others) = rest.split_at(*count);
-            change = change.and(&K::change(mechanism.as_ref(), values));
-            rest = others;
-        }
-        change
+        Ok(self.added.change(&amounts))
     }
 
     fn law_values(&self, natural: &[f64]) -> List<Real<Plain>> {
-        natural[..self.laws].iter().map(|&x| Real::new(x)).collect()
+        let laws = natural.iter().skip(self.added()).take(self.laws);
+        laws.map(|&x| Real::new(x)).collect()
     }
 
     /// Name and prior of each parameter.
     pub fn priors(&self) -> impl Iterator<Item = (&str, &AnyPrior)> {
-        self.unknowns.iter().map(|u| (u.name.as_str(), &u.prior))
+        self.unknowns().map(|u| (u.name.as_str(), &u.prior))
     }
 
-    /// Where a stretch ends at the latest whose length this parameter is;
-    /// `None` where it is none, or has a prior of its own.
-    pub fn ends_by(&self, parameter: usize) -> Option<f64> {
-        self.unknowns.get(parameter).and_then(|unknown| unknown.until)
+    /// Name and prior of each parameter of the laws.
+    pub(crate) fn law_priors(
+        &self,
+    ) -> impl Iterator<Item = (&str, &AnyPrior)> {
+        let laws = self.own[..self.laws].iter();
+        laws.map(|u| (u.name.as_str(), &u.prior))
+    }
+
+    /// What a parameter is to its mechanism; `Other` where it is of none, or
+    /// has been given another prior than the mechanism's.
+    pub fn role(&self, parameter: usize) -> Role {
+        self.unknowns().nth(parameter).map_or(Role::Other, |own| own.role)
     }
 
     /// The middle of the prior of the parameter that comes after given
     /// values; `None` for a flat one.
     pub fn middle(&self, before: &[f64]) -> Option<f64> {
-        let unknown = self.unknowns.get(before.len())?;
-        unknown.amount().middle(before.last().copied())
+        let unknown = self.unknowns().nth(before.len())?;
+        unknown.middle(before.last().copied())
     }
 }
 
@@ -332,7 +303,7 @@ impl Assembled {
         &self,
         run: &mut Run<'_, K>,
     ) -> Result<List<Real<K>>, Stop> {
-        self.ask(run, 0..self.laws)
+        run.amounts(&self.own[..self.laws])
     }
 
     /// Asks for all other parameters and scores the recordings, the law's
@@ -345,22 +316,33 @@ impl Assembled {
         run: &mut Run<'_, K>,
         laws: &[Real<K>],
     ) -> Outcome {
-        let own = self.unknowns.len() - self.added();
-        let errors = self.ask(run, self.laws..own)?;
-        if self.mechanisms.is_empty() {
-            return self.observe(run, laws, &errors);
-        }
-        let amounts = self.ask(run, own..self.unknowns.len())?;
-        let change = self.change(&amounts);
-        run.under(&change, |run| self.observe(run, laws, &errors))
+        let change = self.ask_change(run)?;
+        self.score_under(run, change.as_ref(), laws)
     }
 
-    fn ask<K: Number>(
+    fn ask_change<K: Number>(
         &self,
         run: &mut Run<'_, K>,
-        which: Range<usize>,
-    ) -> Result<List<Real<K>>, Stop> {
-        run.amounts(self.unknowns[which].iter().map(Unknown::amount))
+    ) -> Result<Option<Change<K>>, Stop> {
+        match self.added() {
+            0 => Ok(None),
+            _ => self.added.ask(run).map(Some),
+        }
+    }
+
+    fn score_under<K: Number>(
+        &self,
+        run: &mut Run<'_, K>,
+        change: Option<&Change<K>>,
+        laws: &[Real<K>],
+    ) -> Outcome {
+        let errors = run.amounts(&self.own[self.laws..])?;
+        match change {
+            None => self.observe(run, laws, &errors),
+            Some(change) => {
+                run.under(change, |run| self.observe(run, laws, &errors))
+            }
+        }
     }
 
     fn observe<K: Number>(
@@ -370,6 +352,7 @@ impl Assembled {
         errors: &[Real<K>],
     ) -> Outcome {
         let friction = run.declare(self.friction.with(laws));
+        run.has(|say| say(without_order(&self.noise.name())));
         let flow = self.event.slide(&friction)?;
         let mut outcome = Ok(());
         K::noise(self.noise.as_ref()).with(errors, &mut |noise| {
@@ -383,8 +366,9 @@ impl Assembled {
 
 impl Program for Assembled {
     fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
+        let change = self.ask_change(run)?;
         let laws = self.ask_laws(run)?;
-        self.score(run, &laws)
+        self.score_under(run, change.as_ref(), &laws)
     }
 }
 
@@ -418,16 +402,21 @@ fn fields(
         .collect()
 }
 
+/// A noise's name without its argument: "ar" of "ar(2)".
+fn without_order(name: &str) -> &str {
+    name.split('(').next().unwrap_or_default()
+}
+
 fn quantity(event: &Event) -> Quantity {
     event.recordings().next().map_or(Quantity::Velocity, |s| s.quantity())
 }
 
 /// A field's unit, where it is the recorded value's or its square's.
-fn unit_of(field: &Field, quantity: Quantity) -> String {
+fn unit_of(field: &Field, quantity: Quantity) -> &'static str {
     match field.unit {
-        "value" => quantity.unit().to_owned(),
-        "value2" => quantity.squared_unit().to_owned(),
-        unit => unit.to_owned(),
+        "value" => quantity.unit(),
+        "value2" => quantity.squared_unit(),
+        unit => unit,
     }
 }
 

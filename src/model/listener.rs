@@ -2,7 +2,7 @@
 
 use super::run::Label;
 use crate::error::{Outcome, Stop};
-use crate::noise::Noise;
+use crate::noise::{Noise, Stationary};
 use crate::observe::Series;
 use crate::prior::{Prior, Support};
 use crate::scalar::{Kind, Plain, Real};
@@ -29,6 +29,9 @@ impl<K: Kind> std::fmt::Debug for Declaration<'_, K> {
 pub trait Listener<K: Kind> {
     /// A parameter was declared.
     fn parameter(&mut self, _declaration: &Declaration<'_, K>) {}
+
+    /// A block, a noise or a mechanism of this name was declared.
+    fn block(&mut self, _name: &str) {}
 
     /// A series was compared: residuals are recorded minus predicted.
     ///
@@ -80,6 +83,9 @@ pub struct Collected {
     pub predictions: Vec<Vec<f64>>,
     /// Standardised innovations, series by series.
     pub innovations: Vec<Vec<f64>>,
+    /// How large the errors of each series are, where they depend on those
+    /// before them.
+    pub stationary: Vec<Option<Stationary>>,
 }
 
 /// Collects everything at once.
@@ -121,6 +127,7 @@ impl Listener<Plain> for Collector {
             innovations.push(noise.standardise(value.deviate.value()));
         })?;
         c.innovations.push(innovations);
+        c.stationary.push(noise.stationary());
         Ok(())
     }
 

@@ -6,20 +6,25 @@
 //! same run with another listener. [`Model`] is the object-safe face of a
 //! program; every program has it.
 
+mod added;
 mod alone;
 mod amount;
 mod assembled;
+mod blocks;
 mod information;
+mod labels;
 mod listener;
 mod number;
 mod posterior;
 mod program;
 mod run;
 mod slice;
+mod together;
 mod with;
 
 pub use alone::{Alone, Common};
 pub use assembled::Assembled;
+pub use blocks::declared_blocks;
 pub use information::Information;
 pub use listener::{Collected, Collector, Declaration, Listener, Replicates};
 pub use number::Number;
@@ -27,4 +32,5 @@ pub use posterior::{Cost, Parameter, Posterior};
 pub use program::{Density, Model, Point, Program, Weights};
 pub use run::{Label, Run};
 pub use slice::Slice;
+pub use together::{Member, Together};
 pub use with::With;

@@ -20,36 +20,11 @@ pub trait Program: Sync {
     /// the inference.
     fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome;
 
-    /// How many events the body is of that share no parameters but the first
-    /// ones, [`Program::common`] of them; inference takes such events apart.
+    /// How many events the body passes to [`Run::of_event`], where inference
+    /// may take them apart: what they have in common is declared before the
+    /// first of them, and all data are scored within them.
     fn events(&self) -> usize {
         1
-    }
-
-    /// How many parameters, the first ones, all events have in common.
-    fn common(&self) -> usize {
-        0
-    }
-
-    /// Declares what all events have in common, scores nothing.
-    ///
-    /// # Errors
-    /// As [`Program::run`].
-    fn run_common<K: Number>(&self, _run: &mut Run<'_, K>) -> Outcome {
-        Ok(())
-    }
-
-    /// Runs the body for one event alone: declares what all have in common
-    /// and what is that event's own, scores that event's data.
-    ///
-    /// # Errors
-    /// As [`Program::run`].
-    fn run_event<K: Number>(
-        &self,
-        _event: usize,
-        run: &mut Run<'_, K>,
-    ) -> Outcome {
-        self.run(run)
     }
 }
 

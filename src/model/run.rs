@@ -5,7 +5,7 @@
 //! from the prior) and who listens.
 
 use super::listener::{Declaration, Listener};
-use crate::block::List;
+use crate::block::{List, Named};
 use crate::context::Context;
 use crate::declared::Declared;
 use crate::error::{Error, Outcome, Stop};
@@ -22,12 +22,14 @@ pub struct Label<'a> {
     name: &'a str,
     unit: &'a str,
     indices: [Option<usize>; 2],
+    /// The label of the event that it is a parameter of; empty for none.
+    event: &'a str,
 }
 
 impl<'a> Label<'a> {
     /// A parameter of this name; unit "1" for a pure number.
     pub const fn new(name: &'a str, unit: &'a str) -> Self {
-        Self { name, unit, indices: [None; 2] }
+        Self { name, unit, indices: [None; 2], event: "" }
     }
 
     /// The `index`-th of several (from 0); its name counts from 1. A second
@@ -48,8 +50,22 @@ impl<'a> Label<'a> {
         Self { indices, ..self }
     }
 
-    /// Its name, with its indices in brackets where it has any.
+    /// The same within an event of this label, where there is one.
+    const fn of_event(self, event: &'a str) -> Self {
+        Self { event, ..self }
+    }
+
+    /// Its name, with its indices in brackets where it has any, and the label
+    /// of its event before it.
     pub fn name(&self) -> String {
+        let name = self.own_name();
+        match self.event {
+            "" => name,
+            event => format!("{event}.{name}"),
+        }
+    }
+
+    fn own_name(&self) -> String {
         match self.indices {
             [Some(i), Some(j)] => {
                 format!("{}[{},{}]", self.name, i + 1, j + 1)
@@ -90,6 +106,26 @@ impl Source<'_> {
     }
 }
 
+/// Which of several events a run enters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Entered {
+    /// All of them.
+    All,
+    /// One of them.
+    Only(usize),
+    /// None: what all have in common is declared, nothing is scored.
+    Nothing,
+}
+
+/// Under what a run's body runs.
+#[derive(Debug, Clone, Copy)]
+struct Setting<'r, K: Kind> {
+    change: Option<&'r Change<K>>,
+    /// The label of the event; empty for none.
+    event: &'r str,
+    entered: Entered,
+}
+
 /// One run of a model's body over numbers of kind `K`.
 #[derive(Debug)]
 pub struct Run<'r, K: Kind> {
@@ -100,7 +136,7 @@ pub struct Run<'r, K: Kind> {
     pub(super) log_jacobian: Real<K>,
     pub(super) log_likelihood: Real<K>,
     listener: Option<&'r mut dyn Listener<K>>,
-    change: Option<&'r Change<K>>,
+    setting: Setting<'r, K>,
 }
 
 impl<'r, K: Kind> Run<'r, K> {
@@ -118,7 +154,11 @@ impl<'r, K: Kind> Run<'r, K> {
             log_jacobian: zero,
             log_likelihood: zero,
             listener,
-            change: None,
+            setting: Setting {
+                change: None,
+                event: "",
+                entered: Entered::All,
+            },
         }
     }
 
@@ -131,27 +171,46 @@ impl<'r, K: Kind> Run<'r, K> {
         change: &Change<K>,
         body: impl FnOnce(&mut Run<'_, K>) -> Outcome,
     ) -> Outcome {
-        let both = self.change.map(|outer| outer.and(change));
-        self.changed_to(Some(both.as_ref().unwrap_or(change)), body)
+        let both = self.setting.change.map(|outer| outer.and(change));
+        let change = Some(both.as_ref().unwrap_or(change));
+        self.nested(Setting { change, ..self.setting }, body)
     }
 
     /// Runs the body of one of several events: of the change that this run
-    /// is under, it sees what is of all events and what is its own.
+    /// is under, it sees what is of all events and what is its own. The names
+    /// of its parameters have the label before them, where it is not empty.
     ///
     /// # Errors
     /// Those of the body.
     pub fn of_event(
         &mut self,
         index: usize,
+        label: &str,
         body: impl FnOnce(&mut Run<'_, K>) -> Outcome,
     ) -> Outcome {
-        let own = self.change.map(|change| change.of_event(index));
-        self.changed_to(own.as_ref(), body)
+        match self.setting.entered {
+            Entered::Only(one) if one != index => return Ok(()),
+            Entered::Nothing => return Ok(()),
+            _ => {}
+        }
+        let own = self.setting.change.map(|change| change.of_event(index));
+        let change = own.as_ref();
+        let entered = Entered::All;
+        self.nested(Setting { change, event: label, entered }, body)
     }
 
-    fn changed_to(
+    /// Runs a body that enters of several events only this one, or none.
+    pub(super) fn entering(
         &mut self,
-        change: Option<&Change<K>>,
+        entered: Entered,
+        body: impl FnOnce(&mut Run<'_, K>) -> Outcome,
+    ) -> Outcome {
+        self.nested(Setting { entered, ..self.setting }, body)
+    }
+
+    fn nested(
+        &mut self,
+        setting: Setting<'_, K>,
         body: impl FnOnce(&mut Run<'_, K>) -> Outcome,
     ) -> Outcome {
         let mut inner = Run {
@@ -162,7 +221,7 @@ impl<'r, K: Kind> Run<'r, K> {
             log_jacobian: self.log_jacobian,
             log_likelihood: self.log_likelihood,
             listener: self.listener.as_mut().map(|l| &mut **l as _),
-            change,
+            setting,
         };
         let outcome = body(&mut inner);
         self.position = inner.position;
@@ -193,7 +252,7 @@ impl<'r, K: Kind> Run<'r, K> {
         self.log_prior += log_density;
         if let Some(listener) = &mut self.listener {
             listener.parameter(&Declaration {
-                label: &label,
+                label: &label.of_event(self.setting.event),
                 value: x.value(),
                 prior: &prior,
             });
@@ -241,10 +300,31 @@ impl<'r, K: Kind> Run<'r, K> {
         (0..n).map(|i| self.scalar(label.at(i), &prior)).collect()
     }
 
-    /// Declares a block.
+    /// Declares a block, or a sum of blocks.
     #[inline]
-    pub fn declare<B>(&mut self, block: B) -> Declared<'r, K, B> {
-        Declared::new(block, self.context).under(self.change)
+    pub fn declare<B: Named<Real<K>>>(
+        &mut self,
+        block: B,
+    ) -> Declared<'r, K, B> {
+        self.has(|say| block.names(say));
+        Declared::new(block, self.context).under(self.setting.change)
+    }
+
+    /// Declares what is no block, under a name of its own.
+    pub fn declare_as<B>(
+        &mut self,
+        name: &str,
+        part: B,
+    ) -> Declared<'r, K, B> {
+        self.has(|say| say(name));
+        Declared::new(part, self.context).under(self.setting.change)
+    }
+
+    /// Says which other blocks or mechanisms the model has.
+    pub(super) fn has(&mut self, names: impl FnOnce(&mut dyn FnMut(&str))) {
+        if let Some(listener) = &mut self.listener {
+            names(&mut |name| listener.block(name));
+        }
     }
 
     /// Scores a series against what the model predicts, with a noise.
@@ -267,7 +347,7 @@ impl<'r, K: Kind> Run<'r, K> {
         }
         noise.check(series.grid())?;
         let mut residuals = self.context.buffer();
-        let Some(change) = self.change else {
+        let Some(change) = self.setting.change else {
             let mut values = series.values().iter();
             prediction.predict(series, |predicted| {
                 let value = values.next().copied().unwrap_or(f64::NAN);
@@ -309,12 +389,25 @@ impl<'r, K: Kind> Run<'r, K> {
         residuals: &[Real<K>],
         noise: &N,
     ) -> Outcome {
+        self.admit_data()?;
         if let Some(listener) = &mut self.listener {
             listener.series(series, residuals, noise)?;
         }
         self.log_likelihood +=
             noise.log_likelihood(series.grid(), residuals)?;
         Ok(())
+    }
+
+    /// Fails where events are taken apart and these data are of none.
+    fn admit_data(&self) -> Outcome {
+        match self.setting.entered {
+            Entered::All => Ok(()),
+            _ => Err(Stop::Fail(Error::input(
+                "the model has several events and scores data outside of \
+                 them; expected all data within `Run::of_event`: score these \
+                 in one of the events, or let `Program::events` be 1",
+            ))),
+        }
     }
 
     /// Scores each of the data against one distribution.
@@ -326,6 +419,7 @@ impl<'r, K: Kind> Run<'r, K> {
         data: &(impl Data + ?Sized),
         distribution: P,
     ) -> Outcome {
+        self.admit_data()?;
         for &value in data.data() {
             let log_density = distribution.log_density(Real::new(value));
             if let Some(listener) = &mut self.listener {

@@ -9,7 +9,7 @@ use rand_distr::{ChiSquared, Distribution};
 use smallvec::SmallVec;
 
 use super::student::{log_peak, normal_score};
-use super::{Conditional, Grid, Noise};
+use super::{Conditional, Grid, Noise, Stationary};
 use crate::error::Stop;
 use crate::prior::LN_SQRT_2PI;
 use crate::scalar::{Kind, Real};
@@ -168,6 +168,10 @@ impl<K: Kind, N: Noise<K> + ?Sized> Noise<K> for Altered<'_, K, N> {
             *r = before * self.log_spread(i).value().exp();
         }
         Ok(drawn)
+    }
+
+    fn stationary(&self) -> Option<Stationary> {
+        self.base.stationary()
     }
 
     fn standardise(&self, deviate: f64) -> f64 {

@@ -10,7 +10,9 @@ use self::first::First;
 use self::levinson::{Predictor, one_minus_square};
 use self::root::Filter;
 use super::gaussian::Gaussian;
-use super::{Conditional, Grid, Noise, Spacing, is_positive, one_per_time};
+use super::{
+    Conditional, Grid, Noise, Spacing, Stationary, is_positive, one_per_time,
+};
 use crate::block::{Block, Field, List};
 use crate::error::{Error, Stop};
 use crate::scalar::{Arithmetic, Kind, Real};
@@ -217,6 +219,13 @@ fn is_full(at: &Grid) -> bool {
 }
 
 impl<K: Kind> Noise<K> for Ar<Real<K>> {
+    fn stationary(&self) -> Option<Stationary> {
+        Some(Stationary {
+            error_sd: self.stationary_sd().value(),
+            innovation_sd: self.sigma2.value().sqrt(),
+        })
+    }
+
     fn check(&self, at: &Grid) -> crate::Result<()> {
         let late = |w: &&[f64]| w[1] <= w[0];
         if let Some(w) = at.times().windows(2).find(late) {

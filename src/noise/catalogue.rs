@@ -99,6 +99,11 @@ macro_rules! catalogue {
 
 catalogue![Iid, Ar, Student];
 
+/// Whether a noise of the catalogue has this name.
+pub(crate) fn is_noise(name: &str) -> bool {
+    NOISES.iter().any(|noise| noise.name == name)
+}
+
 /// A noise of the catalogue.
 struct Listed {
     name: &'static str,

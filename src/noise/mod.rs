@@ -17,6 +17,7 @@ mod tests;
 
 pub use altered::{Alteration, Altered};
 pub use ar::Ar;
+pub(crate) use catalogue::is_noise;
 pub use catalogue::{NoiseEntry, NoiseFor, NoiseKind, names, parse};
 pub use grid::{Grid, Spacing};
 pub use iid::Iid;
@@ -34,6 +35,15 @@ pub struct Conditional<K: Kind> {
     /// The innovation over its scale, as the noise's own law sees it;
     /// [`Noise::standardise`] makes it a standard normal deviate.
     pub deviate: Real<K>,
+}
+
+/// How large errors are that depend on those before them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stationary {
+    /// The standard deviation of an error \[unit of the recording\].
+    pub error_sd: f64,
+    /// That of its innovation, what those before it do not tell.
+    pub innovation_sd: f64,
 }
 
 /// A distribution of residuals.
@@ -76,6 +86,11 @@ pub trait Noise<K: Kind> {
     /// for; the same number where the innovations are normal.
     fn standardise(&self, deviate: f64) -> f64 {
         deviate
+    }
+
+    /// How large its errors are, where each depends on those before it.
+    fn stationary(&self) -> Option<Stationary> {
+        None
     }
 
     /// The innovations as standard normal deviates: independent draws of

@@ -42,6 +42,15 @@ impl Axis {
             Self::Speed => "speed",
         }
     }
+
+    /// The unit of what is measured along it.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Place => "m",
+            Self::Time => "s",
+            Self::Speed => "m/s",
+        }
+    }
 }
 
 /// Where a term acts.
@@ -145,6 +154,12 @@ impl<K: Kind> Term<K> {
     /// A term that acts everywhere alike.
     pub fn everywhere(rate: Rate<K>) -> Self {
         Self { rate, over: Stretch::Everywhere, shape: Shape::Even }
+    }
+
+    /// A rate between two places \[m\] or two times \[s\].
+    pub fn between(axis: Axis, edges: [Real<K>; 2], rate: Rate<K>) -> Self {
+        let over = Stretch::Between(axis, edges);
+        Self { over, ..Self::everywhere(rate) }
     }
 
     fn acts(&self, at: &Moment<K>) -> bool {

@@ -2,16 +2,16 @@
 
 use std::f64::consts::LN_10;
 
-use crate::diagnosis::compare::check::stationary_sd;
 use crate::diagnosis::compare::least_squares::least_squares;
 use crate::diagnosis::evidence::fit::Fit;
 use crate::diagnosis::findings::{Improvement, Pair, Pictured};
-use crate::draws::{Draws, uncorrelated_p};
+use crate::draws::{Draws, median, uncorrelated_p};
 use crate::elpd::leave_one_out;
 use crate::error::{Error, Result};
 use crate::infer::{Backend, LaplaceMixture, Quiet, SearchSpace, climb};
 use crate::mechanism::Mechanism;
 use crate::model::{Point, Posterior, Program, With};
+use crate::noise::Stationary;
 use crate::observe::{Event, Quantity, Series};
 use crate::predict::{Bands, predictive_of_all, rmse};
 use crate::seed::Seed;
@@ -41,7 +41,8 @@ pub(crate) struct Figures {
     pub(crate) coverage90: f64,
     pub(crate) ljung_box_p: f64,
     pub(crate) least_squares: f64,
-    pub(crate) stationary_sd: f64,
+    /// The errors of the first recording, where each depends on those before.
+    pub(crate) stationary: Option<Stationary>,
     pub(crate) innovations: Vec<Vec<f64>>,
     /// Of each recording.
     pub(crate) bands: Vec<Bands>,
@@ -70,10 +71,11 @@ pub(crate) fn show<P: Program>(
         recorded.iter().map(|(_, series)| series.times()).collect();
     let bands = predictive_of_all(&posterior, draws, &times, shown.first)?;
     let (_, found) = posterior.collect(Point::Line(&shown.fit.best))?;
-    let predicted = mean_prediction(&posterior, draws)?;
+    let replayed = replay(&posterior, draws)?;
+    let predicted = &replayed.means;
     let values = |(_, series): &(&Event, &Series)| series.values().to_vec();
     let values: Vec<Vec<f64>> = recorded.iter().map(values).collect();
-    let places = recorded.iter().zip(&predicted);
+    let places = recorded.iter().zip(predicted);
     Ok(Figures {
         rmse: rmse(&values.concat(), &predicted.concat()),
         elpd: leave_one_out(&posterior, draws).map_or(f64::NAN, |l| l.elpd),
@@ -84,7 +86,7 @@ pub(crate) fn show<P: Program>(
             true => f64::NAN,
             false => least_squares(&posterior, shown.fit, &values)?,
         },
-        stationary_sd: stationary_sd(draws).unwrap_or(f64::NAN),
+        stationary: replayed.stationary,
         places: places
             .map(|((event, series), p)| places_of(event, series, p))
             .collect(),
@@ -129,31 +131,42 @@ pub(crate) fn rows_of(draws: &Draws) -> Vec<&[f64]> {
     draws.thinned(400)
 }
 
-/// The posterior mean of what is predicted for each value of each series.
-fn mean_prediction(
-    posterior: &Posterior<'_>,
-    draws: &Draws,
-) -> Result<Vec<Vec<f64>>> {
-    let mut sums: Vec<Vec<f64>> = Vec::new();
+/// What the draws of a posterior say of the recordings.
+#[derive(Default)]
+struct Replayed {
+    /// The posterior mean of what is predicted for each value of each series.
+    means: Vec<Vec<f64>>,
+    /// The errors of the first series, in the median.
+    stationary: Option<Stationary>,
+}
+
+/// Runs a model again at its draws.
+fn replay(posterior: &Posterior<'_>, draws: &Draws) -> Result<Replayed> {
+    let mut means: Vec<Vec<f64>> = Vec::new();
+    let (mut errors, mut innovations) = (Vec::new(), Vec::new());
     let mut count = 0.0;
     for row in rows_of(draws) {
         let (density, found) = posterior.collect(Point::Natural(row))?;
         if density.rejected.is_some() {
             continue;
         }
-        if sums.is_empty() {
-            sums = found.predictions;
-        } else {
-            for (sum, one) in sums.iter_mut().zip(found.predictions) {
-                sum.iter_mut().zip(one).for_each(|(s, p)| *s += p);
-            }
+        if let Some(Some(one)) = found.stationary.first() {
+            errors.push(one.error_sd);
+            innovations.push(one.innovation_sd);
+        }
+        means.resize(found.predictions.len(), Vec::new());
+        for (sum, one) in means.iter_mut().zip(found.predictions) {
+            sum.resize(one.len(), 0.0);
+            sum.iter_mut().zip(one).for_each(|(s, p)| *s += p);
         }
         count += 1.0;
     }
-    for sum in &mut sums {
-        sum.iter_mut().for_each(|s| *s /= count);
-    }
-    Ok(sums)
+    means.iter_mut().flatten().for_each(|sum| *sum /= count);
+    let stationary = (!errors.is_empty()).then(|| Stationary {
+        error_sd: median(&errors),
+        innovation_sd: median(&innovations),
+    });
+    Ok(Replayed { means, stationary })
 }
 
 /// The RMSE over the last values, of the model fitted to those before.
@@ -180,7 +193,7 @@ fn held_out<P: Program>(
         let seed = shown.first.child(1);
         let found = search.explore(&posterior, seed, &Quiet)?;
         let Some(draws) = found.draws else { return Ok(f64::NAN) };
-        mean_prediction(&whole, &draws)?
+        replay(&whole, &draws)?.means
     };
     Ok(rmse(&last(values), &last(&predicted)))
 }
@@ -237,7 +250,9 @@ pub(crate) fn improvement(
         coverage90: pair(|f| f.coverage90),
         ljung_box_p: pair(|f| f.ljung_box_p),
         least_squares: pair(|f| f.least_squares),
-        stationary_sd: pair(|f| f.stationary_sd),
+        stationary_sd: pair(|f| {
+            f.stationary.map_or(f64::NAN, |errors| errors.error_sd)
+        }),
     }
 }
 

@@ -11,7 +11,9 @@ use crate::diagnosis::evidence::attribute::{
     Attribution, Known, extend, pair,
 };
 use crate::diagnosis::evidence::fit::Fit;
-use crate::diagnosis::findings::{Judged, Rival, Verdict};
+use crate::diagnosis::findings::{
+    Hypothesis, Judged, Rival, UNKNOWN, Verdict,
+};
 use crate::draws::median;
 use crate::error::Result;
 use crate::mechanism::{Family, Mechanism, Reach};
@@ -89,8 +91,9 @@ impl<P: Program> Choice<'_, P> {
         verdict: Verdict,
         chosen: Option<Chosen>,
     ) -> (Verdict, Option<Chosen>) {
-        let unknown = self.judged.iter().find(|m| m.name == "unknown");
-        let further = RISE * LN_10 + self.beforehand.price("unknown");
+        let unknown =
+            self.judged.iter().find(|m| m.kind == Hypothesis::Unknown);
+        let further = RISE * LN_10 + self.beforehand.price(UNKNOWN);
         let beyond = |c: &Chosen| {
             let short = if c.which.len() > 1 { further } else { 0.0 };
             let reached = c.fit.log_evidence + short;
@@ -210,7 +213,8 @@ impl<P: Program> Choice<'_, P> {
 
     /// The best variants of the physics with the most evidence.
     fn physics(&self) -> Vec<usize> {
-        let is_physics = |m: &&Judged| m.kind == Family::Physics.name();
+        let physics = Hypothesis::Mechanism(Family::Physics);
+        let is_physics = |m: &&Judged| m.kind == physics;
         self.best_of(self.judged.iter().filter(is_physics))
     }
 

@@ -5,11 +5,13 @@ use std::f64::consts::LN_10;
 
 use crate::diagnosis::evidence::attribute::Attribution;
 use crate::diagnosis::evidence::fit::Fit;
-use crate::diagnosis::findings::{Judged, Told, Verdict};
+use crate::diagnosis::findings::{
+    Hypothesis, Judged, NONE, Told, UNKNOWN, Verdict,
+};
 use crate::diagnosis::locate::{FreeForce, NOUN, SAYS};
 use crate::draws::{Summary, log_sum_exp, summarise};
 use crate::error::{Error, Result};
-use crate::mechanism::{Candidate, Mechanism, Noun};
+use crate::mechanism::{Candidate, Family, Mechanism, Noun};
 use crate::physics::forces::Axis;
 
 /// What the user holds likely beforehand: odds by name, against 1 for every
@@ -37,7 +39,7 @@ pub(crate) fn check_odds(
     odds: &Odds,
     catalogue: &[Box<dyn Mechanism>],
 ) -> Result<()> {
-    let known = [&["none", "unknown"], &names(catalogue)[..]].concat();
+    let known = [&[NONE, UNKNOWN], &names(catalogue)[..]].concat();
     match odds.keys().find(|name| !known.contains(&name.as_str())) {
         None => Ok(()),
         Some(name) => Err(Error::input(format!(
@@ -58,9 +60,9 @@ pub(crate) fn judge(
 ) -> Vec<Judged> {
     let none = &found.none;
     let mut all = vec![Judged {
-        name: "none".into(),
+        name: NONE.into(),
         noun: Noun::one("the model as it was"),
-        kind: "none",
+        kind: Hypothesis::Baseline,
         log_evidence: none.log_evidence,
         se: none.se,
         says: "Nothing is missing: the model as it is.".into(),
@@ -102,7 +104,7 @@ fn judged(
     Judged {
         name: name.into(),
         noun: mechanism.noun(amplitude),
-        kind: mechanism.family().name(),
+        kind: Hypothesis::Mechanism(mechanism.family()),
         log_evidence: log_mean(&logs),
         se: fit.se,
         says: mechanism.says().into(),
@@ -126,9 +128,9 @@ fn unknown(forces: &[FreeForce], none: &Fit) -> Judged {
         .iter()
         .max_by(|a, b| a.log_bayes_factor.total_cmp(&b.log_bayes_factor));
     Judged {
-        name: "unknown".into(),
+        name: UNKNOWN.into(),
         noun: Noun::one(NOUN),
-        kind: "unknown",
+        kind: Hypothesis::Unknown,
         log_evidence: log_mean(&logs),
         se: best.map_or(none.se, |force| force.se.hypot(none.se)),
         says: SAYS.into(),
@@ -148,7 +150,7 @@ pub(crate) struct Beforehand<'a> {
 impl<'a> Beforehand<'a> {
     pub(crate) fn of(all: &[Judged], odds: &'a Odds) -> Self {
         let mut beforehand = Self { odds, others: 0.0 };
-        let others = all.iter().filter(|m| m.name != "none");
+        let others = all.iter().filter(|m| m.name != NONE);
         beforehand.others = others.map(|m| beforehand.odds_of(&m.name)).sum();
         beforehand
     }
@@ -160,14 +162,14 @@ impl<'a> Beforehand<'a> {
     /// ln of the prior probability of a name, up to a constant.
     fn log(&self, name: &str) -> f64 {
         match name {
-            "none" => self.odds_of("none").ln(),
+            NONE => self.odds_of(NONE).ln(),
             name => (self.odds_of(name) / self.others).ln(),
         }
     }
 
     /// In ln, by how much less likely a term is than its absence.
     pub(crate) fn price(&self, name: &str) -> f64 {
-        self.log("none") - self.log(name)
+        self.log(NONE) - self.log(name)
     }
 }
 
@@ -181,23 +183,34 @@ fn weigh(all: &mut [Judged], odds: &Odds) {
     }
 }
 
-/// The kind with the largest summed probability.
+/// The verdict that a hypothesis stands for.
+fn verdict_of(kind: Hypothesis) -> Verdict {
+    match kind {
+        Hypothesis::Baseline => Verdict::Adequate,
+        Hypothesis::Unknown => Verdict::Unexplained,
+        Hypothesis::Mechanism(family) => match family {
+            Family::Physics => Verdict::MissingPhysics,
+            Family::Start | Family::Measurement => Verdict::Measurement,
+            Family::Errors => Verdict::Errors,
+        },
+    }
+}
+
+/// The verdict with the largest summed probability.
 pub(crate) fn verdict(all: &[Judged]) -> Verdict {
-    let kinds: [(&[&str], Verdict); 5] = [
-        (&["none"], Verdict::Adequate),
-        (&["physics"], Verdict::MissingPhysics),
-        (&["measurement", "start"], Verdict::Measurement),
-        (&["noise"], Verdict::Errors),
-        (&["unknown"], Verdict::Unexplained),
+    let verdicts = [
+        Verdict::Adequate,
+        Verdict::MissingPhysics,
+        Verdict::Measurement,
+        Verdict::Errors,
+        Verdict::Unexplained,
     ];
-    let mass = |kinds: &[&str]| -> f64 {
-        let of = all.iter().filter(|m| kinds.contains(&m.kind));
+    let mass = |verdict: &Verdict| -> f64 {
+        let of = all.iter().filter(|m| verdict_of(m.kind) == *verdict);
         of.map(|m| m.probability).sum()
     };
-    kinds
-        .into_iter()
-        .max_by(|a, b| mass(a.0).total_cmp(&mass(b.0)))
-        .map_or(Verdict::Adequate, |(_, verdict)| verdict)
+    let most = |a: &Verdict, b: &Verdict| mass(a).total_cmp(&mass(b));
+    verdicts.into_iter().max_by(most).unwrap_or_default()
 }
 
 /// The names within 1 in log10 evidence of the best, at most three.
@@ -244,10 +257,12 @@ pub(crate) fn separating(
     }
     let of = |name: &String| judged.iter().find(|m| m.name == *name);
     let members: Vec<&Judged> = group.iter().filter_map(of).collect();
-    let has = |kind: &str| members.iter().any(|m| m.kind == kind);
+    let has = |verdict: Verdict| {
+        members.iter().any(|m| verdict_of(m.kind) == verdict)
+    };
     let along =
         |axis: Axis| members.iter().any(|m| m.coordinate == Some(axis));
-    Some(if has("start") || has("measurement") {
+    Some(if has(Verdict::Measurement) {
         "A second recording with another sensor, or of a mass released at a \
          known place and moment, would tell them apart."
             .into()
@@ -255,7 +270,7 @@ pub(crate) fn separating(
         "A recording from another start would tell them apart: what belongs \
          to a place stays there, what belongs to a moment moves along."
             .into()
-    } else if has("noise") {
+    } else if has(Verdict::Errors) {
         "A longer recording, or a second sensor on the same mass, would tell \
          them apart."
             .into()

@@ -85,9 +85,12 @@ impl<'a> Shares<'a> {
     }
 
     /// What is in common, by name.
-    fn added(&self) -> impl Iterator<Item = (String, Unknown)> {
+    fn added(&self) -> impl Iterator<Item = Unknown> {
         let unknowns = self.all.unknowns().into_iter().take(self.common);
-        unknowns.map(|u| (format!("{}.{}", self.all.name(), u.name), u))
+        unknowns.map(|u| {
+            let name = format!("{}.{}", self.all.name(), u.name);
+            Unknown { name, ..u }
+        })
     }
 }
 
@@ -117,11 +120,12 @@ pub(crate) fn explore<P: Program>(
         .collect();
     let posteriors: Vec<Posterior<'_>> =
         with.iter().map(|one| Posterior::new(one)).collect::<Result<_>>()?;
+    let shared = Common::new(program, Vec::new()).dimension()?;
     let own = |(one, with): (&Posterior<'_>, &With<'_, _>)| {
-        one.dimension() - with.added() - program.common()
+        one.dimension() - with.added() - shared
     };
     let own: Vec<usize> = posteriors.iter().zip(&with).map(own).collect();
-    let layout = Layout::of(&shares, program.common(), &own);
+    let layout = Layout::of(&shares, shared, &own);
     let added = shares.iter().flat_map(Shares::added).collect();
     let of_common = Common::new(program, added);
     let common = match layout.common.is_empty() {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::diagnosis::evidence::fit::{on_line, spread};
 use crate::infer::{HeldGrid, HeldPlace};
-use crate::mechanism::{Mechanism, Unknown};
+use crate::mechanism::{Mechanism, Role, Unknown};
 use crate::prior::AnyPrior;
 use crate::seed::Seed;
 
@@ -60,11 +60,6 @@ pub(crate) fn edge_grids(
     after: &[f64],
 ) -> Vec<HeldGrid> {
     let unknowns = mechanism.unknowns();
-    let middle = |u: &Unknown| u.prior.quantile(0.5).unwrap_or(0.0);
-    let middles: Vec<f64> = unknowns.iter().map(middle).collect();
-    if mechanism.reach(&middles).is_none() {
-        return Vec::new();
-    }
     let one = |along: Range<usize>| {
         let others = Others::of(&unknowns, &along, before, after);
         narrow(&unknowns[along], &others)
@@ -105,7 +100,7 @@ impl Others {
 /// An amplitude that may have either sign follows from where its stretch is,
 /// nearly as in linear regression: there it is not among them.
 fn even(along: &[Unknown], others: &Others, seed: Seed) -> HeldGrid {
-    let free = usize::from(along.len() > 1 && is_signed(&along[0]));
+    let free = usize::from(along.len() > 1 && along[0].is_signed());
     let first = others.before.len();
     let held = (first + free..first + along.len()).collect();
     let kept = (first..first + free).collect();
@@ -121,10 +116,6 @@ fn even(along: &[Unknown], others: &Others, seed: Seed) -> HeldGrid {
     HeldGrid { held, kept, places }
 }
 
-fn is_signed(amplitude: &Unknown) -> bool {
-    matches!(amplitude.prior, AnyPrior::Normal(..))
-}
-
 /// Where a stretch or a step has an edge; `None` where there is neither.
 ///
 /// A value that lies off is explained by a jolt just before it, and a change
@@ -137,7 +128,7 @@ fn narrow(along: &[Unknown], others: &Others) -> Option<HeldGrid> {
         [from, length] => stretches(&Run::of(from, length)?),
         _ => return None,
     };
-    let sizes = if is_signed(amplitude) { &LARGE[..] } else { &MIDDLE };
+    let sizes = if amplitude.is_signed() { &LARGE[..] } else { &MIDDLE };
     let places = sites
         .iter()
         .flat_map(|(place, apart)| {
@@ -159,7 +150,7 @@ type Site = (Vec<f64>, Vec<f64>);
 
 /// Edges along the run, one after the other.
 fn edges(edge: &Unknown) -> Option<Vec<Site>> {
-    let AnyPrior::Uniform(..) = edge.prior else { return None };
+    let Role::Edge(_) = edge.role else { return None };
     let count = EDGES as usize;
     let site = |i: usize| {
         let at = |part: f64| on_line(&edge.prior, (i as f64 + part) / EDGES);
@@ -211,13 +202,14 @@ struct Run<'a> {
 
 impl<'a> Run<'a> {
     fn of(from: &'a Unknown, length: &'a Unknown) -> Option<Self> {
-        let (AnyPrior::Uniform(begin, _), AnyPrior::Uniform(shortest, _)) =
-            (from.prior, length.prior)
+        let (Role::Edge(_), Role::Length { until }) = (from.role, length.role)
         else {
             return None;
         };
+        let begin = from.prior.quantile(0.0)?;
+        let shortest = length.prior.quantile(0.0)?;
         let (places, lengths) = (&from.prior, &length.prior);
-        Some(Self { begin, end: length.until?, shortest, places, lengths })
+        Some(Self { begin, end: until, shortest, places, lengths })
     }
 
     /// A beginning on the line.

@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::process::Process;
 use super::{CELLS, NOUN, SAYS};
 use crate::block::List;
+use crate::diagnosis::findings::UNKNOWN;
 use crate::error::{Error, Result};
 use crate::mechanism::{
     Candidate, Change, Extent, Family, Missing, Noun, Unknown,
@@ -62,7 +63,7 @@ impl FreeForm {
 
 impl Candidate for FreeForm {
     fn name(&self) -> &'static str {
-        "unknown"
+        UNKNOWN
     }
 
     fn family(&self) -> Family {
@@ -81,7 +82,7 @@ impl Candidate for FreeForm {
         (0..CELLS)
             .map(|i| {
                 let prior = AnyPrior::Normal(0.0, 1.0);
-                Unknown::new(format!("wave[{}]", i + 1), "1", prior)
+                Unknown::amplitude(format!("wave[{}]", i + 1), "1", prior)
             })
             .collect()
     }

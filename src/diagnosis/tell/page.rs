@@ -7,7 +7,7 @@ use crate::diagnosis::tell::pictures::{Figure, bars, forces, of_event};
 use crate::diagnosis::tell::words::{
     before_and_after, in_words, is_corrected,
 };
-use crate::diagnosis::{Diagnosis, Pictured, Told, Verdict};
+use crate::diagnosis::{Diagnosis, Hypothesis, Pictured, Told, Verdict};
 use crate::report::digits::{beside, significant};
 use crate::report::standalone;
 use crate::report::text::{is_synthetic, plain, unit};
@@ -138,7 +138,7 @@ fn sentences(d: &Diagnosis) -> Markup {
     let told: Vec<_> = d
         .mechanisms
         .iter()
-        .filter(|m| !m.says.is_empty() && m.kind != "none")
+        .filter(|m| !m.says.is_empty() && m.kind != Hypothesis::Baseline)
         .filter(|m| m.probability >= 0.01 || d.selected.contains(&m.name))
         .take(5)
         .collect();

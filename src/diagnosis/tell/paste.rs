@@ -2,9 +2,11 @@
 
 use std::fmt::Write as _;
 
+use crate::block::Field;
 use crate::diagnosis::findings::Corrected;
 use crate::diagnosis::options::Options;
 use crate::mechanism::Mechanism;
+use crate::mechanism::catalogue::is_built_in;
 use crate::model::Assembled;
 use crate::physics::friction::LAWS;
 use crate::prior::AnyPrior;
@@ -13,14 +15,14 @@ use crate::prior::AnyPrior;
 /// `None` where a law is not one of the crate's own, or a mechanism has
 /// another prior than its own.
 pub(crate) fn declarations(model: &Assembled) -> Option<[String; 2]> {
-    let own: Vec<_> = model.mechanisms().flat_map(|m| m.unknowns()).collect();
-    let blocks = model.friction_dimension() + model.noise_dimension();
-    let given = model.priors().enumerate().skip(blocks);
-    let given = given.map(|(i, (_, prior))| (*prior, model.ends_by(i)));
-    if !given.eq(own.iter().map(|unknown| (unknown.prior, unknown.until))) {
+    let added: Vec<_> =
+        model.mechanisms().flat_map(|m| m.unknowns()).collect();
+    let given = model.priors().enumerate().take(added.len());
+    let given = given.map(|(i, (_, prior))| (*prior, model.role(i)));
+    if !given.eq(added.iter().map(|unknown| (unknown.prior, unknown.role))) {
         return None;
     }
-    let mut priors = model.priors().map(|(_, prior)| *prior);
+    let mut priors = model.priors().skip(added.len()).map(|(_, p)| *p);
     let friction = model.friction();
     let terms = friction
         .split(" + ")
@@ -34,24 +36,34 @@ pub(crate) fn declarations(model: &Assembled) -> Option<[String; 2]> {
             Some(format!("{} {{ {} }}", camel(name), fields.join(", ")))
         })
         .collect::<Option<Vec<_>>>()?;
-    let noise = model.noise();
-    let errors = match noise.split('(').next()? {
-        "ar" => {
-            let rest: Vec<String> = priors
-                .by_ref()
-                .take(model.noise_dimension())
-                .map(rust)
-                .collect();
-            let (sigma2, phi) = rest.split_last()?;
-            format!("Ar {{ phi: [{}], sigma2: {sigma2} }}", phi.join(", "))
-        }
-        "student" => {
-            let (dof, scale) = (rust(priors.next()?), rust(priors.next()?));
-            format!("Student {{ dof: {dof}, scale: {scale} }}")
-        }
-        _ => format!("Iid {{ sigma2: {} }}", rust(priors.next()?)),
-    };
+    let errors = errors(model, &mut priors)?;
     Some([terms.join(" + "), errors])
+}
+
+/// The noise with its priors: `Ar { phi: [Uniform(..)], sigma2: .. }`.
+fn errors(
+    model: &Assembled,
+    priors: &mut impl Iterator<Item = AnyPrior>,
+) -> Option<String> {
+    let noise = model.noise();
+    let mut fields: Vec<(Field, Vec<String>)> = Vec::new();
+    for field in model.noise_fields() {
+        let prior = rust(priors.next()?);
+        match fields.last_mut() {
+            Some((last, list)) if last.name == field.name => list.push(prior),
+            _ => fields.push((field, vec![prior])),
+        }
+    }
+    let told = |(field, priors): &(Field, Vec<String>)| {
+        let priors = priors.join(", ");
+        match field.list {
+            true => format!("{}: [{priors}]", field.name),
+            false => format!("{}: {priors}", field.name),
+        }
+    };
+    let fields: Vec<String> = fields.iter().map(told).collect();
+    let name = camel(noise.split('(').next()?);
+    Some(format!("{name} {{ {} }}", fields.join(", ")))
 }
 
 /// "velocity-weakening" as the struct is called.
@@ -86,9 +98,11 @@ pub(crate) fn corrected(
     if added.is_empty() {
         return Corrected { equation, ..Corrected::default() };
     }
+    let is_found = all.iter().all(|m| is_built_in(m.name()));
     let model = options
         .declarations
         .as_ref()
+        .filter(|_| is_found)
         .map_or_else(String::new, |own| model_text(&all, own, quantity));
     let labels = all.iter().map(|m| m.label()).collect();
     Corrected { equation, model, labels }

@@ -107,30 +107,17 @@ pub(crate) fn interval(p: &Told) -> String {
 
 /// The parameter's own name, without that of its mechanism.
 pub(crate) fn own_name<'a>(p: &'a Told, mechanism: &str) -> &'a str {
-    let rest = p.name.strip_prefix(mechanism);
-    rest.and_then(|rest| rest.strip_prefix('.')).unwrap_or(&p.name)
+    p.within(mechanism).unwrap_or(&p.name)
 }
 
 /// A selected mechanism's parameters: those of the corrected model where it
 /// has them, else those that the mechanism had alone.
 pub(crate) fn amounts<'a>(d: &'a Diagnosis, name: &str) -> Vec<&'a Told> {
-    let joint: Vec<&Told> = d
-        .parameters
-        .iter()
-        .filter(|p| own_name(p, name).len() < p.name.len())
-        .collect();
+    let joint: Vec<&Told> =
+        d.parameters.iter().filter(|p| p.within(name).is_some()).collect();
     match judged(d, name) {
         Some(alone) if joint.is_empty() => alone.parameters.iter().collect(),
         _ => joint,
-    }
-}
-
-/// The unit of an axis.
-pub(crate) fn axis_unit(axis: Axis) -> &'static str {
-    match axis {
-        Axis::Place => "m",
-        Axis::Time => "s",
-        Axis::Speed => "m/s",
     }
 }
 
@@ -147,7 +134,7 @@ pub(crate) fn range(from: f64, to: f64, unit: &str) -> String {
 
 /// `from 132 to 187 m (8.1 to 10.6 s)`.
 pub(crate) fn stretch(m: &Mismatch) -> String {
-    let unit = axis_unit(m.axis);
+    let unit = m.axis.unit();
     let main = range(m.from, m.to, unit);
     let known = |a: f64, b: f64| a.is_finite() && b.is_finite();
     let mut beside = Vec::new();

@@ -6,8 +6,10 @@ use crate::diagnosis::tell::phrases::{
 };
 use crate::diagnosis::tell::signs::either_sign;
 use crate::diagnosis::{
-    Baseline, Diagnosis, Judged, Mismatch, Pair, Rival, Told, Verdict,
+    Baseline, Diagnosis, Hypothesis, Judged, Mismatch, Pair, Rival, Told,
+    Verdict,
 };
+use crate::mechanism::Family;
 use crate::report::digits::{beside, p_value, per_cent, short, significant};
 use crate::report::text::{plain, unit};
 
@@ -59,7 +61,8 @@ fn verdict(d: &Diagnosis) -> String {
     let (model, event) = (model(&d.baseline), event(d));
     match d.verdict {
         Verdict::Adequate => {
-            let sure = d.mechanisms.iter().find(|m| m.kind == "none");
+            let sure =
+                d.mechanisms.iter().find(|m| m.kind == Hypothesis::Baseline);
             let sure = sure.map_or(String::new(), |m| {
                 format!(" (probability {})", probability(m.probability))
             });
@@ -92,7 +95,8 @@ fn verdict(d: &Diagnosis) -> String {
 /// Whether it is the start rather than the measurement that is off.
 fn of_start(d: &Diagnosis) -> bool {
     let best = d.selected.first().and_then(|name| judged(d, name));
-    best.or(d.mechanisms.first()).is_some_and(|m| m.kind == "start")
+    best.or(d.mechanisms.first())
+        .is_some_and(|m| m.kind == Hypothesis::Mechanism(Family::Start))
 }
 
 /// Where simulation and recording differ, as a force.
@@ -144,7 +148,7 @@ fn parts(m: &Mismatch) -> String {
     if m.parts.len() < 2 {
         return String::new();
     }
-    let unit = crate::diagnosis::tell::phrases::axis_unit(m.axis);
+    let unit = m.axis.unit();
     let told: Vec<String> = m
         .parts
         .iter()
@@ -220,11 +224,11 @@ fn instead(d: &Diagnosis) -> String {
 }
 
 fn unexplained(d: &Diagnosis) -> String {
-    let force = d.mechanisms.iter().find(|m| m.kind == "unknown");
+    let force = d.mechanisms.iter().find(|m| m.kind == Hypothesis::Unknown);
     let sure = force.map_or(String::new(), |m| {
         format!(" (probability {})", probability(m.probability))
     });
-    let named = |m: &&Judged| !matches!(m.kind, "unknown" | "none");
+    let named = |m: &&Judged| matches!(m.kind, Hypothesis::Mechanism(_));
     let near = match d.mechanisms.iter().find(named) {
         Some(m) => format!(
             "; of the named ones {} comes nearest ({})",
@@ -437,7 +441,8 @@ fn residuals(b: &Baseline) -> String {
 
 /// What would come next, where nothing is missing.
 fn nearest(d: &Diagnosis) -> Option<String> {
-    let others = || d.mechanisms.iter().filter(|m| m.kind != "none");
+    let others =
+        || d.mechanisms.iter().filter(|m| m.kind != Hypothesis::Baseline);
     let m = others().next()?;
     Some(format!(
         "Of {} things that could be missing, the most probable is {} \
@@ -511,7 +516,11 @@ pub(crate) fn before_and_after(d: &Diagnosis) -> Vec<Row> {
         row("Ljung-Box p".to_owned(), i.ljung_box_p, p_value),
     ];
     if i.stationary_sd.before.is_finite() {
-        rows.push(row(format!("AR(1) sd{units}"), i.stationary_sd, two));
+        rows.push(row(
+            format!("sd of the errors{units}"),
+            i.stationary_sd,
+            two,
+        ));
     }
     rows
 }

@@ -1,6 +1,5 @@
 //! Errors that are correlated in time.
 
-use super::unknown;
 use crate::mechanism::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
@@ -27,7 +26,7 @@ impl Candidate for Ar1 {
     }
 
     fn unknowns(&self) -> Vec<Unknown> {
-        vec![unknown("phi", "1", AnyPrior::Uniform(0.0, 1.0))]
+        vec![Unknown::amplitude("phi", "1", AnyPrior::Uniform(0.0, 1.0))]
     }
 
     fn contained_in(&self) -> &'static [&'static str] {

@@ -1,6 +1,6 @@
 //! Values that are means over a window of time.
 
-use super::{unknown, variant};
+use super::variant;
 use crate::mechanism::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
@@ -35,7 +35,7 @@ impl Candidate for AveragingWindow {
     }
 
     fn unknowns(&self) -> Vec<Unknown> {
-        vec![unknown("window", "s", AnyPrior::HalfNormal(1.0))]
+        vec![Unknown::amplitude("window", "s", AnyPrior::HalfNormal(1.0))]
     }
 
     fn form(&self) -> Option<&'static str> {

@@ -1,6 +1,5 @@
 //! A recording whose clock is ahead or behind.
 
-use super::unknown;
 use crate::mechanism::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
@@ -32,7 +31,7 @@ impl Candidate for ClockOffset {
     }
 
     fn unknowns(&self) -> Vec<Unknown> {
-        vec![unknown("ahead", "s", AnyPrior::Normal(0.0, 1.0))]
+        vec![Unknown::amplitude("ahead", "s", AnyPrior::Normal(0.0, 1.0))]
     }
 
     fn formula(&self) -> String {

@@ -1,6 +1,6 @@
 //! A constant force that holds the mass back.
 
-use super::{FORCE, Rate, everywhere, unknown};
+use super::{FORCE, Rate, everywhere};
 use crate::mechanism::Extent;
 use crate::mechanism::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
@@ -31,7 +31,7 @@ impl Candidate for Cohesion {
     }
 
     fn unknowns(&self) -> Vec<Unknown> {
-        vec![unknown("force", "m/s2", AnyPrior::HalfNormal(FORCE))]
+        vec![Unknown::amplitude("force", "m/s2", AnyPrior::HalfNormal(FORCE))]
     }
 
     fn contained_in(&self) -> &'static [&'static str] {

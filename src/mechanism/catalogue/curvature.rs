@@ -1,6 +1,6 @@
 //! Bends of the ground that press on the mass or relieve it.
 
-use super::{Rate, everywhere, unknown};
+use super::{Rate, everywhere};
 use crate::mechanism::Extent;
 use crate::mechanism::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
@@ -31,7 +31,7 @@ impl Candidate for Curvature {
     }
 
     fn unknowns(&self) -> Vec<Unknown> {
-        vec![unknown("share", "1", AnyPrior::LogNormal(0.0, 0.3))]
+        vec![Unknown::amplitude("share", "1", AnyPrior::LogNormal(0.0, 0.3))]
     }
 
     fn contained_in(&self) -> &'static [&'static str] {

@@ -1,6 +1,6 @@
 //! Snow that the mass takes up along a stretch and sets in motion.
 
-use super::{FORCE, Rate, along_place, between, unknown};
+use super::{FORCE, Rate, along_place, between};
 use crate::mechanism::Extent;
 use crate::mechanism::{
     Candidate, Change, Family, Missing, Noun, Reach, Unknown,
@@ -36,7 +36,10 @@ impl Candidate for Entrainment {
     fn unknowns(&self) -> Vec<Unknown> {
         let scale = FORCE / self.extent.speed.powi(2);
         let amplitude = AnyPrior::HalfNormal(scale);
-        along_place(&self.extent, unknown("growth", "1/m", amplitude))
+        along_place(
+            &self.extent,
+            Unknown::amplitude("growth", "1/m", amplitude),
+        )
     }
 
     fn coordinate(&self) -> Option<Axis> {

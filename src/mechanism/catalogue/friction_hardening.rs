@@ -1,6 +1,6 @@
 //! Dry friction that changes steadily with distance or time.
 
-use super::{FRICTION, Rate, Shape, everywhere, or, unknown, variant};
+use super::{FRICTION, Rate, Shape, everywhere, or, variant};
 use crate::mechanism::Extent;
 use crate::mechanism::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::physics::forces::{Axis, Range};
@@ -56,12 +56,12 @@ impl Candidate for FrictionHardening {
 
     fn unknowns(&self) -> Vec<Unknown> {
         let amplitude = AnyPrior::Normal(0.0, FRICTION);
-        let mut unknowns = vec![unknown("delta_mu", "1", amplitude)];
+        let mut unknowns =
+            vec![Unknown::amplitude("delta_mu", "1", amplitude)];
         if self.saturates {
-            let unit = if self.axis == Axis::Time { "s" } else { "m" };
             let span = self.range().span;
             let scale = AnyPrior::Uniform(0.02 * span, span);
-            unknowns.push(unknown("scale", unit, scale));
+            unknowns.push(Unknown::other("scale", self.axis.unit(), scale));
         }
         unknowns
     }

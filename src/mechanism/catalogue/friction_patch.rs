@@ -1,6 +1,6 @@
 //! Dry friction that differs between two places.
 
-use super::{FRICTION, Rate, along_place, between, or, unknown};
+use super::{FRICTION, Rate, along_place, between, or};
 use crate::mechanism::Extent;
 use crate::mechanism::{
     Candidate, Change, Family, Missing, Noun, Reach, Unknown,
@@ -36,7 +36,10 @@ impl Candidate for FrictionPatch {
 
     fn unknowns(&self) -> Vec<Unknown> {
         let amplitude = AnyPrior::Normal(0.0, FRICTION);
-        along_place(&self.extent, unknown("delta_mu", "1", amplitude))
+        along_place(
+            &self.extent,
+            Unknown::amplitude("delta_mu", "1", amplitude),
+        )
     }
 
     fn coordinate(&self) -> Option<Axis> {

@@ -1,6 +1,6 @@
 //! Dry friction that differs beyond a place or after a time.
 
-use super::{FRICTION, Rate, between, or, unknown, variant};
+use super::{FRICTION, Rate, between, or, variant};
 use crate::mechanism::Extent;
 use crate::mechanism::{
     Candidate, Change, Family, Missing, Noun, Reach, Unknown,
@@ -57,12 +57,13 @@ impl Candidate for FrictionStep {
         let Extent { begin, run, duration, .. } = self.extent;
         let amplitude = AnyPrior::Normal(0.0, FRICTION);
         let edge = match self.axis {
-            Axis::Time => {
-                unknown("from", "s", AnyPrior::Uniform(0.0, duration))
-            }
-            _ => unknown("from", "m", AnyPrior::Uniform(begin, begin + run)),
+            Axis::Time => [0.0, duration],
+            _ => [begin, begin + run],
         };
-        vec![unknown("delta_mu", "1", amplitude), edge]
+        vec![
+            Unknown::amplitude("delta_mu", "1", amplitude),
+            Unknown::edge("from", self.axis, edge),
+        ]
     }
 
     fn coordinate(&self) -> Option<Axis> {

@@ -1,6 +1,5 @@
 //! Errors among which large ones are common.
 
-use super::unknown;
 use crate::mechanism::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
@@ -27,7 +26,7 @@ impl Candidate for HeavyTails {
     }
 
     fn unknowns(&self) -> Vec<Unknown> {
-        vec![unknown("tail", "1", AnyPrior::Uniform(0.0, 0.5))]
+        vec![Unknown::amplitude("tail", "1", AnyPrior::Uniform(0.0, 0.5))]
     }
 
     fn contained_in(&self) -> &'static [&'static str] {

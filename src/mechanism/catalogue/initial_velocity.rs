@@ -1,6 +1,6 @@
 //! A mass that is already moving at t = 0.
 
-use super::{SPEED, unknown};
+use super::SPEED;
 use crate::mechanism::Extent;
 use crate::mechanism::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
@@ -36,7 +36,7 @@ impl Candidate for InitialVelocity {
             0.0 => AnyPrior::HalfNormal(SPEED),
             _ => AnyPrior::Normal(0.0, SPEED),
         };
-        vec![unknown("speed", "m/s", prior)]
+        vec![Unknown::amplitude("speed", "m/s", prior)]
     }
 
     fn formula(&self) -> String {

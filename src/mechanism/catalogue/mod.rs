@@ -11,6 +11,7 @@ mod friction_patch;
 mod friction_step;
 mod heavy_tails;
 mod initial_velocity;
+mod list;
 mod release_position;
 mod sensor_drift;
 mod slope_bias;
@@ -32,6 +33,8 @@ pub use friction_patch::FrictionPatch;
 pub use friction_step::FrictionStep;
 pub use heavy_tails::HeavyTails;
 pub use initial_velocity::InitialVelocity;
+pub use list::{Catalogue, catalogue, find};
+pub(crate) use list::{is_built_in, is_held};
 pub use release_position::ReleasePosition;
 pub use sensor_drift::SensorDrift;
 pub use slope_bias::SlopeBias;
@@ -42,12 +45,10 @@ pub use velocity_scale::VelocityScale;
 pub use velocity_weakening::VelocityWeakening;
 pub use viscous_drag::ViscousDrag;
 
-use crate::error::{Error, Result};
 use crate::mechanism::Extent;
 use crate::mechanism::{Candidate, Change, Mechanism, Unknown};
 use crate::physics::Rate;
-use crate::physics::forces::{Axis, STEPS, Shape, Stretch, Term};
-use crate::prior::AnyPrior;
+use crate::physics::forces::{Axis, Shape, Term};
 use crate::scalar::{Kind, Real};
 
 /// The prior sd of a force at the upper-quartile speed \[m/s2\].
@@ -63,13 +64,9 @@ const ANGLE: f64 = 3.0;
 /// The prior sd of what a sensor has drifted by the end \[recorded unit\].
 const DRIFT: f64 = 2.0;
 
-/// Every mechanism that applies to an event of this extent and that a model
-/// with laws, noises and mechanisms of these names has not, variants one after
-/// the other.
-pub fn catalogue(
-    extent: &Extent,
-    blocks: &[String],
-) -> Vec<Box<dyn Mechanism>> {
+/// Every mechanism that comes along and applies to an event of this extent,
+/// variants one after the other.
+fn built_in(extent: &Extent) -> Vec<Box<dyn Mechanism>> {
     let extent = *extent;
     let (place, time, speed) = (Axis::Place, Axis::Time, Axis::Speed);
     let mut all: Vec<Box<dyn Mechanism>> = vec![
@@ -111,59 +108,7 @@ pub fn catalogue(
             all.push(Box::new(AveragingWindow { begins }));
         }
     }
-    all.retain(|m| !is_held(m.as_ref(), blocks));
     all
-}
-
-/// The mechanism that a label means; a name that has several variants means
-/// the first of them.
-///
-/// # Errors
-/// A label of none, or of one that does not apply here; the message lists
-/// those that do.
-pub fn find(
-    label: &str,
-    extent: &Extent,
-    blocks: &[String],
-) -> Result<Box<dyn Mechanism>> {
-    let wanted = without_spaces(label);
-    let is_it = |m: &dyn Mechanism| {
-        wanted == m.name() || wanted == without_spaces(&m.label())
-    };
-    let mut here = catalogue(extent, blocks);
-    if let Some(i) = here.iter().position(|m| is_it(m.as_ref())) {
-        return Ok(here.swap_remove(i));
-    }
-    let labels: Vec<String> = here.iter().map(|m| m.label()).collect();
-    let labels = labels.join(", ");
-    let everything =
-        Extent { carried: true, bends: true, averages: true, ..*extent };
-    let elsewhere = catalogue(&everything, &[]);
-    let known = elsewhere.into_iter().find(|m| is_it(m.as_ref()));
-    let why = match known {
-        None => "is no mechanism",
-        Some(m) if is_held(m.as_ref(), blocks) => {
-            "is a term that the model's laws or noise already have"
-        }
-        Some(_) => "has nothing to act on in this event",
-    };
-    Err(Error::input(format!(
-        "{label:?} {why}; expected one of {labels}: take one of them, or \
-         drop it"
-    )))
-}
-
-fn without_spaces(text: &str) -> String {
-    text.chars().filter(|c| !c.is_whitespace()).collect()
-}
-
-/// Whether a model with blocks of these names has the mechanism already, in
-/// this variant or another.
-pub(crate) fn is_held(mechanism: &dyn Candidate, blocks: &[String]) -> bool {
-    let also = mechanism.contained_in();
-    blocks
-        .iter()
-        .any(|own| own == mechanism.name() || also.contains(&own.as_str()))
 }
 
 /// A name with what tells the variant from the others that share it.
@@ -182,37 +127,33 @@ fn or(amplitude: f64, words: [&'static str; 3]) -> &'static str {
     }
 }
 
-fn unknown(name: &str, unit: &'static str, prior: AnyPrior) -> Unknown {
-    Unknown::new(name, unit, prior)
-}
-
 /// Where a stretch of the run begins, uniform, and how long it is: uniform from
 /// the shortest that values can show to what is left of the run.
 fn stretch(
     names: [&str; 2],
-    unit: &'static str,
+    axis: Axis,
     [begin, end]: [f64; 2],
     shortest: f64,
 ) -> [Unknown; 2] {
-    let from = AnyPrior::Uniform(begin, end);
-    let length = AnyPrior::Uniform(shortest, end - begin);
-    let length = unknown(names[1], unit, length);
-    let until = Some(end);
-    [unknown(names[0], unit, from), Unknown { until, ..length }]
+    let lengths = [shortest, end - begin];
+    [
+        Unknown::edge(names[0], axis, [begin, end]),
+        Unknown::length(names[1], axis, lengths, end),
+    ]
 }
 
 /// An amplitude, where its stretch begins, and how long that is.
 fn along_place(extent: &Extent, amplitude: Unknown) -> Vec<Unknown> {
     let Extent { begin, run, duration, step, .. } = *extent;
     let shortest = run * (step / duration).min(0.5);
-    let names = ["from", "length"];
-    let [from, length] = stretch(names, "m", [begin, begin + run], shortest);
+    let (names, edges) = (["from", "length"], [begin, begin + run]);
+    let [from, length] = stretch(names, Axis::Place, edges, shortest);
     vec![amplitude, from, length]
 }
 
 /// A rate added along the whole run.
 fn everywhere<K: Kind>(extent: &Extent, rate: Rate<K>) -> Change<K> {
-    of_term(extent, Term::everywhere(rate))
+    Change::force(extent, Term::everywhere(rate))
 }
 
 /// A rate added between two places or times.
@@ -222,13 +163,5 @@ fn between<K: Kind>(
     axis: Axis,
     edges: [Real<K>; 2],
 ) -> Change<K> {
-    let over = Stretch::Between(axis, edges);
-    of_term(extent, Term { over, ..Term::everywhere(rate) })
-}
-
-fn of_term<K: Kind>(extent: &Extent, term: Term<K>) -> Change<K> {
-    let mut change = Change::default();
-    change.forces.terms.push(term);
-    change.forces.step = extent.duration / STEPS;
-    change
+    Change::force(extent, Term::between(axis, edges, rate))
 }

@@ -1,6 +1,6 @@
 //! A release at another place than the event says.
 
-use super::{DISTANCE, unknown};
+use super::DISTANCE;
 use crate::mechanism::Extent;
 use crate::mechanism::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
@@ -40,7 +40,7 @@ impl Candidate for ReleasePosition {
             }
             _ => AnyPrior::HalfNormal(DISTANCE),
         };
-        vec![unknown("shift", "m", prior)]
+        vec![Unknown::amplitude("shift", "m", prior)]
     }
 
     fn formula(&self) -> String {

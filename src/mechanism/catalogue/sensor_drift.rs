@@ -1,6 +1,6 @@
 //! A sensor that drifts with time.
 
-use super::{DRIFT, unknown};
+use super::DRIFT;
 use crate::mechanism::Extent;
 use crate::mechanism::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
@@ -32,7 +32,11 @@ impl Candidate for SensorDrift {
 
     fn unknowns(&self) -> Vec<Unknown> {
         let scale = DRIFT / self.extent.duration;
-        vec![unknown("drift", "value/s", AnyPrior::Normal(0.0, scale))]
+        vec![Unknown::amplitude(
+            "drift",
+            "value/s",
+            AnyPrior::Normal(0.0, scale),
+        )]
     }
 
     fn formula(&self) -> String {

@@ -1,6 +1,6 @@
 //! A track whose angle is off.
 
-use super::{ANGLE, unknown};
+use super::ANGLE;
 use crate::mechanism::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
@@ -27,7 +27,7 @@ impl Candidate for SlopeBias {
     }
 
     fn unknowns(&self) -> Vec<Unknown> {
-        vec![unknown("angle", "deg", AnyPrior::Normal(0.0, ANGLE))]
+        vec![Unknown::amplitude("angle", "deg", AnyPrior::Normal(0.0, ANGLE))]
     }
 
     fn formula(&self) -> String {

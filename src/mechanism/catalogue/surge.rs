@@ -1,6 +1,6 @@
 //! A force during a window of time.
 
-use super::{FORCE, Rate, between, or, stretch, unknown};
+use super::{FORCE, Rate, between, or, stretch};
 use crate::mechanism::Extent;
 use crate::mechanism::{
     Candidate, Change, Family, Missing, Noun, Reach, Unknown,
@@ -38,8 +38,9 @@ impl Candidate for Surge {
         let amplitude = AnyPrior::Normal(0.0, FORCE);
         let Extent { duration, step, .. } = self.extent;
         let (names, shortest) = (["from", "lasts"], step.min(0.5 * duration));
-        let [from, lasts] = stretch(names, "s", [0.0, duration], shortest);
-        vec![unknown("force", "m/s2", amplitude), from, lasts]
+        let [from, lasts] =
+            stretch(names, Axis::Time, [0.0, duration], shortest);
+        vec![Unknown::amplitude("force", "m/s2", amplitude), from, lasts]
     }
 
     fn coordinate(&self) -> Option<Axis> {

@@ -1,6 +1,6 @@
 //! Errors that are larger in one part of the recording than in another.
 
-use super::{unknown, variant};
+use super::variant;
 use crate::mechanism::Extent;
 use crate::mechanism::{
     Candidate, Change, Covariate, Family, Missing, Noun, Unknown,
@@ -46,7 +46,7 @@ impl Candidate for UnequalVariance {
     }
 
     fn unknowns(&self) -> Vec<Unknown> {
-        vec![unknown("rise", "1", AnyPrior::Normal(0.0, 1.0))]
+        vec![Unknown::amplitude("rise", "1", AnyPrior::Normal(0.0, 1.0))]
     }
 
     fn coordinate(&self) -> Option<Axis> {

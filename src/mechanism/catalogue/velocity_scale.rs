@@ -1,6 +1,5 @@
 //! A sensor whose scale is off.
 
-use super::unknown;
 use crate::mechanism::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
@@ -27,7 +26,7 @@ impl Candidate for VelocityScale {
     }
 
     fn unknowns(&self) -> Vec<Unknown> {
-        vec![unknown("excess", "1", AnyPrior::Normal(0.0, 0.1))]
+        vec![Unknown::amplitude("excess", "1", AnyPrior::Normal(0.0, 0.1))]
     }
 
     fn formula(&self) -> String {

@@ -1,6 +1,6 @@
 //! Dry friction that falls with the speed.
 
-use super::{FRICTION, Rate, Shape, everywhere, unknown};
+use super::{FRICTION, Rate, Shape, everywhere};
 use crate::mechanism::Extent;
 use crate::mechanism::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
@@ -33,8 +33,12 @@ impl Candidate for VelocityWeakening {
     fn unknowns(&self) -> Vec<Unknown> {
         let centre = (0.5 * self.extent.speed).ln();
         vec![
-            unknown("delta_mu", "1", AnyPrior::HalfNormal(FRICTION)),
-            unknown("speed", "m/s", AnyPrior::LogNormal(centre, 0.7)),
+            Unknown::amplitude(
+                "delta_mu",
+                "1",
+                AnyPrior::HalfNormal(FRICTION),
+            ),
+            Unknown::other("speed", "m/s", AnyPrior::LogNormal(centre, 0.7)),
         ]
     }
 

@@ -1,6 +1,6 @@
 //! A drag in u that the model lacks.
 
-use super::{FORCE, Rate, everywhere, unknown};
+use super::{FORCE, Rate, everywhere};
 use crate::mechanism::Extent;
 use crate::mechanism::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
@@ -32,7 +32,7 @@ impl Candidate for ViscousDrag {
 
     fn unknowns(&self) -> Vec<Unknown> {
         let scale = FORCE / self.extent.speed;
-        vec![unknown("drag", "1/s", AnyPrior::HalfNormal(scale))]
+        vec![Unknown::amplitude("drag", "1/s", AnyPrior::HalfNormal(scale))]
     }
 
     fn contained_in(&self) -> &'static [&'static str] {

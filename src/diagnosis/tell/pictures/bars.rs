@@ -2,7 +2,8 @@
 
 use super::Figure;
 use crate::diagnosis::tell::phrases::{log10, probability};
-use crate::diagnosis::{Diagnosis, Judged};
+use crate::diagnosis::{Diagnosis, Hypothesis, Judged};
+use crate::mechanism::Family;
 use crate::report::svg::axes::{Axes, Key, Labels, Scale, legend};
 use crate::report::svg::canvas::{Anchor, Canvas, FONT, Frame, WIDTH};
 use crate::report::svg::palette::{FAINT, GREY, INK, Pen};
@@ -69,35 +70,49 @@ fn row(canvas: &mut Canvas, axes: &Axes, d: &Diagnosis, m: &Judged, top: f64) {
     let right = axes.at(p.clamp(0.0, 1.0), 0.0).0.max(left + 1.5);
     let (top, bottom) = (top + 4.0, top + ROW - 4.0);
     let bar = Frame { left, top, right, bottom };
-    canvas.rectangle(bar, colour(m.kind), 1.0);
+    canvas.rectangle(bar, style(m.kind).1, 1.0);
     let text = probability(m.probability);
     canvas.text((COLUMNS.0, base), Anchor::End, INK, &text);
     let text = match m.kind {
-        "none" => "0".to_owned(),
+        Hypothesis::Baseline => "0".to_owned(),
         _ => log10(m.log10_bayes_factor).replace('-', "−"),
     };
     canvas.text((COLUMNS.1, base), Anchor::End, INK, &text);
 }
 
-/// A colour for each kind, told apart by the colour-blind.
-fn colour(kind: &str) -> &'static str {
-    KINDS.iter().find(|k| k.0 == kind).map_or("#8c8c8c", |k| k.2)
+/// What bars of a kind are called, and their colour, told apart by the
+/// colour-blind.
+fn style(kind: Hypothesis) -> (&'static str, &'static str) {
+    match kind {
+        Hypothesis::Mechanism(Family::Physics) => ("force", "#0072b2"),
+        Hypothesis::Mechanism(Family::Start) => ("start", "#009e73"),
+        Hypothesis::Mechanism(Family::Measurement) => {
+            ("measurement", "#e69f00")
+        }
+        Hypothesis::Mechanism(Family::Errors) => ("errors", "#cc79a7"),
+        Hypothesis::Unknown => ("force of free form", "#56b4e9"),
+        Hypothesis::Baseline => ("nothing missing", "#8c8c8c"),
+    }
 }
 
-const KINDS: [(&str, &str, &str); 6] = [
-    ("physics", "force", "#0072b2"),
-    ("start", "start", "#009e73"),
-    ("measurement", "measurement", "#e69f00"),
-    ("noise", "errors", "#cc79a7"),
-    ("unknown", "force of free form", "#56b4e9"),
-    ("none", "nothing missing", "#8c8c8c"),
+/// The kinds in the order of the legend.
+const KINDS: [Hypothesis; 6] = [
+    Hypothesis::Mechanism(Family::Physics),
+    Hypothesis::Mechanism(Family::Start),
+    Hypothesis::Mechanism(Family::Measurement),
+    Hypothesis::Mechanism(Family::Errors),
+    Hypothesis::Unknown,
+    Hypothesis::Baseline,
 ];
 
 fn entries(shown: &[Judged]) -> Vec<(Key, &'static str)> {
     KINDS
-        .iter()
-        .filter(|kind| shown.iter().any(|m| m.kind == kind.0))
-        .map(|kind| (Key::Fill(kind.2), kind.1))
+        .into_iter()
+        .filter(|kind| shown.iter().any(|m| m.kind == *kind))
+        .map(|kind| {
+            let (name, colour) = style(kind);
+            (Key::Fill(colour), name)
+        })
         .collect()
 }
 
