@@ -65,3 +65,23 @@ pub trait Block<S>: Sized {
         Self::FIELDS.iter().find(|f| f.name == name).map_or("1", |f| f.unit)
     }
 }
+
+/// Says by which names a part of a model is known, so that a diagnosis does
+/// not look for what the model has. Every block does; a sum says the names of
+/// its terms.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not say of which blocks it is",
+    label = "a model declares blocks, and sums of them",
+    note = "give the struct `impl<S> Block<S> for ..` with its name and \
+            fields, or declare it by name: `run.declare_as(\"name\", ..)`"
+)]
+pub trait Named<S> {
+    /// Hands each name to `say`.
+    fn names(&self, say: &mut dyn FnMut(&str));
+}
+
+impl<S, B: Block<S>> Named<S> for B {
+    fn names(&self, say: &mut dyn FnMut(&str)) {
+        say(B::NAME);
+    }
+}

@@ -107,7 +107,8 @@ impl Program for OnePatch {
         let length = run.scalar(metres("length"), Gamma(3.0, 50.0))?;
         let patches = vec![[delta, begin, length]];
         let smooth = self.kind.smooth;
-        let law = run.declare(Patched { mu, drag, patches, smooth });
+        let law = Patched { mu, drag, patches, smooth };
+        let law = run.declare_as("patched", law);
         let flow = self.event.slide(&law)?;
         let series = &self.event.velocity;
         let variance = Label::new("sigma2", "m2/s2");

@@ -215,9 +215,9 @@ impl Assembled {
     pub fn blocks(&self) -> Vec<String> {
         let laws = self.friction.terms().iter().map(|law| law.name());
         let noise = self.noise.name();
-        let noise = noise.split('(').next().unwrap_or_default();
         let added = self.mechanisms().map(|m| m.name());
-        laws.chain([noise]).chain(added).map(str::to_owned).collect()
+        let all = laws.chain([without_order(&noise)]).chain(added);
+        all.map(str::to_owned).collect()
     }
 
     /// Whether the parameter of this index says how the mass moves, and not
@@ -351,6 +351,7 @@ impl Assembled {
             return self.observe(run, laws, &errors);
         }
         let amounts = self.ask(run, own..self.unknowns.len())?;
+        run.has(|say| self.mechanisms().for_each(|m| say(m.name())));
         let change = self.change(&amounts);
         run.under(&change, |run| self.observe(run, laws, &errors))
     }
@@ -370,6 +371,7 @@ impl Assembled {
         errors: &[Real<K>],
     ) -> Outcome {
         let friction = run.declare(self.friction.with(laws));
+        run.has(|say| say(without_order(&self.noise.name())));
         let flow = self.event.slide(&friction)?;
         let mut outcome = Ok(());
         K::noise(self.noise.as_ref()).with(errors, &mut |noise| {
@@ -416,6 +418,11 @@ fn fields(
             (full, name.clone(), *field)
         })
         .collect()
+}
+
+/// A noise's name without its argument: "ar" of "ar(2)".
+fn without_order(name: &str) -> &str {
+    name.split('(').next().unwrap_or_default()
 }
 
 fn quantity(event: &Event) -> Quantity {

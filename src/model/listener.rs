@@ -30,6 +30,9 @@ pub trait Listener<K: Kind> {
     /// A parameter was declared.
     fn parameter(&mut self, _declaration: &Declaration<'_, K>) {}
 
+    /// A block, a noise or a mechanism of this name was declared.
+    fn block(&mut self, _name: &str) {}
+
     /// A series was compared: residuals are recorded minus predicted.
     ///
     /// # Errors

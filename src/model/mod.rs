@@ -9,6 +9,7 @@
 mod alone;
 mod amount;
 mod assembled;
+mod blocks;
 mod information;
 mod listener;
 mod number;
@@ -20,6 +21,7 @@ mod with;
 
 pub use alone::{Alone, Common};
 pub use assembled::Assembled;
+pub use blocks::declared_blocks;
 pub use information::Information;
 pub use listener::{Collected, Collector, Declaration, Listener, Replicates};
 pub use number::Number;

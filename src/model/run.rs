@@ -5,7 +5,7 @@
 //! from the prior) and who listens.
 
 use super::listener::{Declaration, Listener};
-use crate::block::List;
+use crate::block::{List, Named};
 use crate::context::Context;
 use crate::declared::Declared;
 use crate::error::{Error, Outcome, Stop};
@@ -241,10 +241,31 @@ impl<'r, K: Kind> Run<'r, K> {
         (0..n).map(|i| self.scalar(label.at(i), &prior)).collect()
     }
 
-    /// Declares a block.
+    /// Declares a block, or a sum of blocks.
     #[inline]
-    pub fn declare<B>(&mut self, block: B) -> Declared<'r, K, B> {
+    pub fn declare<B: Named<Real<K>>>(
+        &mut self,
+        block: B,
+    ) -> Declared<'r, K, B> {
+        self.has(|say| block.names(say));
         Declared::new(block, self.context).under(self.change)
+    }
+
+    /// Declares what is no block, under a name of its own.
+    pub fn declare_as<B>(
+        &mut self,
+        name: &str,
+        part: B,
+    ) -> Declared<'r, K, B> {
+        self.has(|say| say(name));
+        Declared::new(part, self.context).under(self.change)
+    }
+
+    /// Says which other blocks or mechanisms the model has.
+    pub(super) fn has(&mut self, names: impl FnOnce(&mut dyn FnMut(&str))) {
+        if let Some(listener) = &mut self.listener {
+            names(&mut |name| listener.block(name));
+        }
     }
 
     /// Scores a series against what the model predicts, with a noise.

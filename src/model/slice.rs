@@ -188,6 +188,10 @@ impl Listener<Plain> for Heard<'_> {
         self.declared += 1;
     }
 
+    fn block(&mut self, name: &str) {
+        self.listener.block(name);
+    }
+
     fn series(
         &mut self,
         series: &Series,

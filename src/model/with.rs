@@ -65,6 +65,7 @@ impl<P: Program> Program for With<'_, P> {
             let amounts = unknowns.iter().zip(&mut names);
             let amounts = amounts.map(|(of, name)| Amount::of(name, of));
             let values = run.amounts(amounts)?;
+            run.has(|say| say(mechanism.name()));
             change = change.and(&K::change(*mechanism, &values));
         }
         run.under(&change, |run| self.program.run(run))

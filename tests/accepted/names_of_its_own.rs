@@ -6,11 +6,21 @@ use own::S;
 
 mod own {
     use couloir::Real;
+    use couloir::block::{Block, Field};
     use couloir::physics::friction::{Friction, Rate, Site, Varies};
     use couloir::scalar::Kind;
 
     pub(super) struct S<N> {
         pub(super) mu: N,
+    }
+
+    impl<N: Copy> Block<N> for S<N> {
+        const NAME: &'static str = "s";
+        const FIELDS: &'static [Field] = &[Field::new("mu", "1", "Flat()")];
+
+        fn from_values(values: &[N]) -> Self {
+            Self { mu: values[0] }
+        }
     }
 
     impl<K: Kind> Friction<K> for S<Real<K>> {

@@ -7,7 +7,7 @@
 use std::fmt::Debug;
 
 use super::{Friction, Rate, Site, Varies};
-use crate::block::Field;
+use crate::block::{Field, Named};
 use crate::error::{Error, Result};
 use crate::scalar::{Grad, Kind, Plain, Real};
 
@@ -211,5 +211,11 @@ impl<K: LawKind> Friction<K> for Valued<'_, K> {
             values = rest;
         }
         total
+    }
+}
+
+impl<K: LawKind> Named<Real<K>> for Valued<'_, K> {
+    fn names(&self, say: &mut dyn FnMut(&str)) {
+        self.laws.0.iter().for_each(|law| say(law.name()));
     }
 }
