@@ -8,6 +8,7 @@
 mod backends;
 mod climb;
 mod conditional;
+mod convergence;
 mod display;
 mod nested;
 mod proposal;
@@ -20,6 +21,7 @@ pub use backends::*;
 pub(crate) use climb::damped_step;
 pub use climb::{Peak, climb};
 pub(crate) use conditional::{Conditional, Held, Integral, Integration};
+pub(crate) use convergence::convergence;
 pub use nested::{Group, Grouped};
 pub use proposal::Mixture;
 pub(crate) use proposal::student_constant;
@@ -28,7 +30,7 @@ pub(crate) use weights::systematic;
 use std::fmt::Debug;
 use std::time::Instant;
 
-use crate::draws::{Draws, log_sum_exp};
+use crate::draws::{Draws, Summary, log_sum_exp};
 use crate::error::{Error, Result};
 use crate::model::{Cost, Posterior};
 use crate::seed::Seed;
@@ -69,6 +71,9 @@ pub trait Backend: Debug + Sync {
 pub struct Inference {
     /// Draws from the posterior, of the parameters as named.
     pub draws: Option<Draws>,
+    /// The figures of each parameter, where the draws are of chains: what
+    /// the warnings about those were read off.
+    pub summaries: Vec<Summary>,
     /// The posterior mode.
     pub mode: Option<Mode>,
     /// Each parameter's posterior without Monte Carlo error, where the backend
@@ -93,10 +98,12 @@ pub struct Evidence {
     pub method: String,
 }
 
-/// Runs a backend on a posterior and adds what it cost.
+/// Runs a backend on a posterior and adds what it cost, and whether chains
+/// have converged.
 ///
 /// # Errors
-/// As [`Backend::explore`].
+/// As [`Backend::explore`], and a model whose parameters are not the same at
+/// all draws.
 pub fn infer(
     backend: &dyn Backend,
     posterior: &Posterior<'_>,
@@ -114,6 +121,7 @@ pub fn infer(
         rejections: after.rejections - before.rejections,
         seconds: begun.elapsed().as_secs_f64(),
     };
+    convergence::check(posterior, &mut inference)?;
     Ok(inference)
 }
 
