@@ -8,6 +8,7 @@ use crate::error::{Error, Outcome, Result};
 use crate::model::{Collector, Listener, Model, Point, Posterior, Replicates};
 use crate::noise::Noise;
 use crate::observe::Series;
+use crate::prior::Prior;
 use crate::scalar::{Plain, Real};
 use crate::seed::{Rng, Seed};
 
@@ -177,9 +178,34 @@ pub(crate) fn rmse(values: &[f64], predicted: &[f64]) -> f64 {
     (squares.sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Synthetic recordings: what each series of the model might have shown if
-/// its parameters had the values `truth`. The series say when; the values
-/// that they hold are not looked at.
+/// What a model might have shown: its series, and the values that it scores
+/// one by one (`v ~ Normal(..)`). It reads as the list of its series.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Synthetic {
+    /// Its series, in the order scored.
+    pub series: Vec<Series>,
+    /// Its single values, in the order scored.
+    pub elements: Vec<f64>,
+}
+
+impl std::ops::Deref for Synthetic {
+    type Target = [Series];
+    fn deref(&self) -> &[Series] {
+        &self.series
+    }
+}
+
+impl IntoIterator for Synthetic {
+    type Item = Series;
+    type IntoIter = std::vec::IntoIter<Series>;
+    fn into_iter(self) -> Self::IntoIter {
+        self.series.into_iter()
+    }
+}
+
+/// Synthetic recordings: what each series of the model, and each value that
+/// it scores by itself, might have shown if its parameters had the values
+/// `truth`. The series say when; the values that they hold are not looked at.
 ///
 /// ```
 /// use couloir::prelude::*;
@@ -201,28 +227,55 @@ pub(crate) fn rmse(values: &[f64], predicted: &[f64]) -> f64 {
 /// # Ok::<(), couloir::Error>(())
 /// ```
 ///
+/// Values scored by themselves come in the order in which they are:
+///
+/// ```
+/// use couloir::prelude::*;
+/// model! {
+///     struct Runouts { seen: Vec<f64> }
+///     mean ~ Normal(300.0, 50.0);
+///     likelihood { seen ~ Normal(mean, 5.0); }
+/// }
+/// let plan = Runouts::new(vec![0.0; 3]);
+/// let made = simulate(&plan, &[250.0], Seed::new(1))?;
+/// assert_eq!(made.elements.len(), 3);
+/// assert!(made.elements.iter().all(|x| (x - 250.0).abs() < 25.0));
+/// # Ok::<(), couloir::Error>(())
+/// ```
+///
 /// # Errors
-/// Values with which there is no flow or noise.
+/// Values with which there is no flow or noise, or a distribution that has no
+/// draws.
 pub fn simulate(
     model: &dyn Model,
     truth: &[f64],
     seed: Seed,
-) -> Result<Vec<Series>> {
+) -> Result<Synthetic> {
     let mut rng = seed.rng();
-    let mut made = Made { rng: &mut rng, series: Vec::new() };
+    let mut made = Made { rng: &mut rng, made: Synthetic::default() };
     let density = model.evaluate(Point::Natural(truth), Some(&mut made))?;
-    match density.rejected {
-        None => Ok(made.series),
-        Some(reason) => Err(Error::input(format!(
+    if let Some(reason) = density.rejected {
+        return Err(Error::input(format!(
             "nothing can be simulated with the values {truth:?}: {reason}"
+        )));
+    }
+    let elements = &made.made.elements;
+    match elements.iter().position(|x| x.is_nan()) {
+        None => Ok(made.made),
+        Some(i) => Err(Error::input(format!(
+            "value {} of the {} that the model scores one by one has no \
+             draws: its distribution is improper, or its arguments are \
+             impossible with the values {truth:?}",
+            i + 1,
+            elements.len()
         ))),
     }
 }
 
-/// Collects synthetic series.
+/// Collects synthetic recordings.
 struct Made<'a> {
     rng: &'a mut Rng,
-    series: Vec<Series>,
+    made: Synthetic,
 }
 
 impl Listener<Plain> for Made<'_> {
@@ -235,7 +288,22 @@ impl Listener<Plain> for Made<'_> {
         let mut one = Replicates::new(self.rng);
         one.series(series, residuals, noise)?;
         let values = one.series.into_iter().flatten().collect();
-        self.series.push(series.with_values(values)?);
+        self.made.series.push(series.with_values(values)?);
         Ok(())
+    }
+
+    fn element(
+        &mut self,
+        value: f64,
+        log_density: Real<Plain>,
+        distribution: &dyn Prior<Plain>,
+    ) {
+        let mut one = Replicates::new(self.rng);
+        one.element(value, log_density, distribution);
+        self.made.elements.append(&mut one.elements);
+    }
+
+    fn scores(&self) -> bool {
+        false
     }
 }

@@ -430,7 +430,11 @@ impl Writer<'_> {
             }
             Sampling::Distribution(distribution) => {
                 let law = self.distribution(distribution);
-                quote_spanned!(at=> #run.observe_each(#data, #law)?)
+                let place = written(&line.data);
+                quote_spanned! {at=>
+                    #run.observe_each(#data, #law)
+                        .map_err(|stop| stop.within(#place))?
+                }
             }
         }
     }
@@ -475,6 +479,12 @@ fn braced(inside: TokenStream, span: Span) -> TokenStream {
     let mut group = Group::new(proc_macro2::Delimiter::Brace, inside);
     group.set_span(span);
     TokenTree::Group(group).into()
+}
+
+/// An expression as the user wrote it.
+fn written(given: &Expr) -> String {
+    let plain = || given.to_token_stream().to_string().replace(' ', "");
+    given.span().source_text().unwrap_or_else(plain)
 }
 
 /// `&given`, with parentheses where it takes them.
