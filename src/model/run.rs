@@ -10,7 +10,7 @@ use crate::context::Context;
 use crate::declared::Declared;
 use crate::error::{Error, Outcome, Stop};
 use crate::mechanism::Change;
-use crate::noise::{Altered, Noise};
+use crate::noise::{Altered, Noise, Wide};
 use crate::observe::{Prediction, Series};
 use crate::prior::{Prior, Support};
 use crate::scalar::{Kind, Real};
@@ -300,7 +300,7 @@ impl<'r, K: Kind> Run<'r, K> {
                 let value = values.next().copied().unwrap_or(f64::NAN);
                 residuals.push(value - predicted);
             })?;
-            return self.score(series, &residuals, noise);
+            return self.score_wide(series, &residuals, noise);
         };
         let mut covariate = self.context.buffer();
         let mut recorded = series.times().iter().zip(series.values());
@@ -318,14 +318,34 @@ impl<'r, K: Kind> Run<'r, K> {
         };
         let residuals = &residuals[..series.len()];
         if change.noise.is_none() {
-            return self.score(series, residuals, noise);
+            return self.score_wide(series, residuals, noise);
         }
         let altered = Altered {
             base: noise,
             change: change.noise,
             covariate: &covariate,
         };
-        self.score(series, residuals, &altered)
+        self.score_wide(series, residuals, &altered)
+    }
+
+    /// Scores residuals with errors as wide as the noise says they are where
+    /// so much is predicted.
+    #[inline]
+    fn score_wide<N: Noise<K>>(
+        &mut self,
+        series: &Series,
+        residuals: &[Real<K>],
+        noise: &N,
+    ) -> Outcome {
+        let mut widths = self.context.buffer();
+        for (value, residual) in series.values().iter().zip(residuals) {
+            match noise.width(*value - *residual) {
+                Some(width) => widths.push(width),
+                None => return self.score(series, residuals, noise),
+            }
+        }
+        let wide = Wide::new(noise, &widths, series.grid())?;
+        self.score(series, residuals, &wide)
     }
 
     /// Scores residuals and lets the listener hear them.

@@ -170,6 +170,10 @@ impl<K: Kind, N: Noise<K> + ?Sized> Noise<K> for Altered<'_, K, N> {
         Ok(drawn)
     }
 
+    fn width(&self, predicted: Real<K>) -> Option<Real<K>> {
+        self.base.width(predicted)
+    }
+
     fn standardise(&self, deviate: f64) -> f64 {
         if self.is_tailed() {
             normal_score(deviate, 1.0 / self.change.tail.value())
