@@ -85,3 +85,21 @@ impl<S, B: Block<S>> Named<S> for B {
         say(B::NAME);
     }
 }
+
+/// A field that takes the value of one parameter: a number.
+#[diagnostic::on_unimplemented(
+    message = "one prior cannot fill a field of type `{Self}`",
+    label = "a list takes a list of priors: put `[` and `]` about this; what \
+             is unknown is a number of the block's own type, `S`, not `f64`"
+)]
+pub trait OneNumber<S>: Sized {
+    /// The field of that value.
+    fn of(value: S) -> Self;
+}
+
+impl<S> OneNumber<S> for S {
+    #[inline(always)]
+    fn of(value: S) -> Self {
+        value
+    }
+}

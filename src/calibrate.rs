@@ -5,7 +5,8 @@ use rayon::prelude::*;
 use crate::draws::{self, Draws, Summary, summarise};
 use crate::error::{Error, Result, Stop};
 use crate::infer::{
-    Backend, ImportanceSampling, Inference, Map, Mode, Progress, infer,
+    Backend, ImportanceSampling, Inference, Map, Mode, Progress, convergence,
+    infer,
 };
 use crate::mechanism::Role;
 use crate::model::{Assembled, Point, Posterior};
@@ -44,7 +45,16 @@ pub fn calibrate(
     let root = Seed::new(seed);
     let mut found = infer(backend, &posterior, root.child(0), progress)?;
     let draws = draws_of(&found, backend)?;
-    let summaries = summarise(&draws);
+    // Those of chains have been told already, with the warnings.
+    let summaries = match found.summaries.is_empty() {
+        false => std::mem::take(&mut found.summaries),
+        true => {
+            let summaries = summarise(&draws);
+            let poor = convergence(&summaries, draws.chains());
+            found.warnings.extend(poor);
+            summaries
+        }
+    };
     let median: Vec<f64> = summaries.iter().map(|s| s.q50).collect();
     let search = Map { starts: 4, from: vec![median.clone()] };
     let mode = infer(&search, &posterior, root.child(1), progress)?;
@@ -96,7 +106,6 @@ pub fn calibrate(
     check_fit(&mut report, &posterior, series, &median)?;
     report.checks.kolmogorov_smirnov_p = chains_alike(&draws);
     report.track = track(model, &median)?;
-    report.warnings.extend(convergence(&summaries, draws.chains()));
     Ok(Calibration { report, draws })
 }
 
@@ -300,25 +309,4 @@ fn track(model: &Assembled, median: &[f64]) -> Result<TrackReport> {
         shown.then(|| place(rest.time.value(), s))
     });
     Ok(report)
-}
-
-/// What to know of the chains before trusting them.
-fn convergence(summaries: &[Summary], chains: usize) -> Vec<String> {
-    let mut warnings = Vec::new();
-    for s in summaries {
-        if chains > 1 && s.rhat >= 1.01 {
-            warnings.push(format!(
-                "the chains have not agreed on {} (R-hat {:.3}, should be \
-                 below 1.01): ask for more --warmup and --draws",
-                s.name, s.rhat
-            ));
-        }
-        if s.ess_bulk < 100.0 * chains as f64 {
-            warnings.push(format!(
-                "only {:.0} effective draws of {}: ask for more --draws",
-                s.ess_bulk, s.name
-            ));
-        }
-    }
-    warnings
 }

@@ -89,6 +89,10 @@ macro_rules! score_like {
             ) -> Result<Real<K>, Stop> {
                 $inner.log_likelihood(at, residuals)
             }
+            #[inline]
+            fn width(&$self, predicted: Real<K>) -> Option<Real<K>> {
+                $inner.width(predicted)
+            }
             fn standardise(&$self, deviate: f64) -> f64 {
                 $inner.standardise(deviate)
             }

@@ -75,6 +75,17 @@ pub enum Stop {
     Fail(Error),
 }
 
+impl Stop {
+    /// The same with the place put before a failure's message.
+    #[must_use]
+    pub fn within(self, place: impl fmt::Display) -> Self {
+        match self {
+            Self::Reject(reason) => Self::Reject(reason),
+            Self::Fail(error) => Self::Fail(error.within(place)),
+        }
+    }
+}
+
 impl From<Error> for Stop {
     fn from(error: Error) -> Self {
         Self::Fail(error)

@@ -8,6 +8,7 @@ use crate::error::{Error, Outcome, Result};
 use crate::model::{Collector, Listener, Model, Point, Posterior, Replicates};
 use crate::noise::Noise;
 use crate::observe::Series;
+use crate::prior::Prior;
 use crate::scalar::{Plain, Real};
 use crate::seed::{Rng, Seed};
 
@@ -177,9 +178,34 @@ pub(crate) fn rmse(values: &[f64], predicted: &[f64]) -> f64 {
     (squares.sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Synthetic recordings: what each series of the model might have shown if
-/// its parameters had the values `truth`. The series say when; the values
-/// that they hold are not looked at.
+/// What a model might have shown: its series, and the values that it scores
+/// one by one (`v ~ Normal(..)`). It reads as the list of its series.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Synthetic {
+    /// Its series, in the order scored.
+    pub series: Vec<Series>,
+    /// Its single values, in the order scored.
+    pub elements: Vec<f64>,
+}
+
+impl std::ops::Deref for Synthetic {
+    type Target = [Series];
+    fn deref(&self) -> &[Series] {
+        &self.series
+    }
+}
+
+impl IntoIterator for Synthetic {
+    type Item = Series;
+    type IntoIter = std::vec::IntoIter<Series>;
+    fn into_iter(self) -> Self::IntoIter {
+        self.series.into_iter()
+    }
+}
+
+/// Synthetic recordings: what each series of the model, and each value that
+/// it scores by itself, might have shown if its parameters had the values
+/// `truth`. The series say when; the values that they hold are not looked at.
 ///
 /// ```
 /// use couloir::prelude::*;
@@ -201,28 +227,55 @@ pub(crate) fn rmse(values: &[f64], predicted: &[f64]) -> f64 {
 /// # Ok::<(), couloir::Error>(())
 /// ```
 ///
+/// Values scored by themselves come in the order in which they are:
+///
+/// ```
+/// use couloir::prelude::*;
+/// model! {
+///     struct Runouts { seen: Vec<f64> }
+///     mean ~ Normal(300.0, 50.0);
+///     likelihood { seen ~ Normal(mean, 5.0); }
+/// }
+/// let plan = Runouts::new(vec![0.0; 3]);
+/// let made = simulate(&plan, &[250.0], Seed::new(1))?;
+/// assert_eq!(made.elements.len(), 3);
+/// assert!(made.elements.iter().all(|x| (x - 250.0).abs() < 25.0));
+/// # Ok::<(), couloir::Error>(())
+/// ```
+///
 /// # Errors
-/// Values with which there is no flow or noise.
+/// Values with which there is no flow or noise, or a distribution that has no
+/// draws.
 pub fn simulate(
     model: &dyn Model,
     truth: &[f64],
     seed: Seed,
-) -> Result<Vec<Series>> {
+) -> Result<Synthetic> {
     let mut rng = seed.rng();
-    let mut made = Made { rng: &mut rng, series: Vec::new() };
+    let mut made = Made { rng: &mut rng, made: Synthetic::default() };
     let density = model.evaluate(Point::Natural(truth), Some(&mut made))?;
-    match density.rejected {
-        None => Ok(made.series),
-        Some(reason) => Err(Error::input(format!(
+    if let Some(reason) = density.rejected {
+        return Err(Error::input(format!(
             "nothing can be simulated with the values {truth:?}: {reason}"
+        )));
+    }
+    let elements = &made.made.elements;
+    match elements.iter().position(|x| x.is_nan()) {
+        None => Ok(made.made),
+        Some(i) => Err(Error::input(format!(
+            "value {} of the {} that the model scores one by one has no \
+             draws: its distribution is improper, or its arguments are \
+             impossible with the values {truth:?}",
+            i + 1,
+            elements.len()
         ))),
     }
 }
 
-/// Collects synthetic series.
+/// Collects synthetic recordings.
 struct Made<'a> {
     rng: &'a mut Rng,
-    series: Vec<Series>,
+    made: Synthetic,
 }
 
 impl Listener<Plain> for Made<'_> {
@@ -235,7 +288,161 @@ impl Listener<Plain> for Made<'_> {
         let mut one = Replicates::new(self.rng);
         one.series(series, residuals, noise)?;
         let values = one.series.into_iter().flatten().collect();
-        self.series.push(series.with_values(values)?);
+        self.made.series.push(series.with_values(values)?);
         Ok(())
+    }
+
+    fn element(
+        &mut self,
+        value: f64,
+        log_density: Real<Plain>,
+        distribution: &dyn Prior<Plain>,
+    ) {
+        let mut one = Replicates::new(self.rng);
+        one.element(value, log_density, distribution);
+        self.made.elements.append(&mut one.elements);
+    }
+
+    fn scores(&self) -> bool {
+        false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::block::{Block, Field};
+    use crate::error::Stop;
+    use crate::infer::{Effort, MetropolisHastings, Quiet, infer};
+    use crate::model::{Label, Number, Program, Run, Weights};
+    use crate::noise::{Conditional, Grid, Iid};
+    use crate::observe::Event;
+    use crate::physics::Track;
+    use crate::physics::friction::Coulomb;
+    use crate::prior::{Exponential, Normal};
+    use crate::scalar::Kind;
+
+    /// Errors of the standard deviation `share` times the speed.
+    struct Relative<S> {
+        share: S,
+    }
+
+    impl<S: Copy> Block<S> for Relative<S> {
+        const NAME: &'static str = "relative";
+        const FIELDS: &'static [Field] =
+            &[Field::new("share", "1", "Exponential(0.1)")];
+
+        fn from_values(values: &[S]) -> Self {
+            Self { share: values[0] }
+        }
+    }
+
+    impl<K: Kind> Noise<K> for Relative<Real<K>> {
+        fn check(&self, _: &Grid) -> Result<()> {
+            Ok(())
+        }
+
+        fn walk(
+            &self,
+            at: &Grid,
+            residuals: &[Real<K>],
+            visit: &mut dyn FnMut(Conditional<K>),
+        ) -> Result<(), Stop> {
+            let sigma2 = self.share * self.share;
+            Iid { sigma2 }.walk(at, residuals, visit)
+        }
+
+        fn draw(&self, at: &Grid, rng: &mut Rng) -> Result<Vec<f64>, Stop> {
+            let sigma2 = self.share * self.share;
+            Iid { sigma2 }.draw(at, rng)
+        }
+
+        fn width(&self, predicted: Real<K>) -> Option<Real<K>> {
+            Some(predicted.abs())
+        }
+    }
+
+    struct Scattered(Event);
+
+    impl Program for Scattered {
+        fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
+            let mu =
+                run.scalar(Label::new("mu", "1"), Normal::new(0.3, 0.1))?;
+            let share = Label::new("share", "1");
+            let share = run.scalar(share, Exponential::new(0.1))?;
+            let law = run.declare(Coulomb { mu });
+            let flow = self.0.slide(&law)?;
+            let errors = run.declare(Relative { share });
+            run.observe(&self.0.velocity, flow.velocity(), &errors)
+        }
+    }
+
+    const TRUTH: [f64; 2] = [0.3, 0.1];
+
+    fn event() -> Event {
+        let times: Vec<f64> = (1..=60).map(|i| 0.25 * f64::from(i)).collect();
+        let blank = vec![0.0; times.len()];
+        let track = Track::incline(35.0, 2000.0).unwrap();
+        let series = Series::velocity(times, blank).unwrap();
+        let plan = Event::on(track).velocity(series).build().unwrap();
+        let model = Scattered(plan.clone());
+        let made = simulate(&model, &TRUTH, Seed::new(3)).unwrap();
+        plan.with_recording(made[0].clone()).unwrap()
+    }
+
+    #[test]
+    fn scatter_that_grows_with_the_speed_is_scored_as_its_density_says() {
+        let event = event();
+        let model = Scattered(event.clone());
+        let [mu, share] = TRUTH;
+        // dv/dt = g (sin - mu cos) on an incline.
+        let (sin, cos) = 35_f64.to_radians().sin_cos();
+        let expected: f64 = event
+            .velocity
+            .times()
+            .iter()
+            .zip(event.velocity.values())
+            .map(|(t, seen)| {
+                let speed = 9.81 * (sin - mu * cos) * t;
+                let law = Normal::<Plain>::new(speed, share * speed);
+                law.log_density(Real::new(*seen)).value()
+            })
+            .sum();
+        let at = Point::Natural(&TRUTH);
+        let density = model.evaluate(at, None).unwrap();
+        assert!((density.log_likelihood - expected).abs() < 1e-6);
+        let posterior = Posterior::new(&model).unwrap();
+        let z = posterior.line(&TRUTH).unwrap();
+        let mut slope = [0.0; 2];
+        posterior.gradient(&z, Weights::LINE, &mut slope).unwrap();
+        let on = |h: f64| {
+            let near = [z[0] + h, z[1]];
+            posterior.density(Point::Line(&near)).unwrap().on_line()
+        };
+        let difference = (on(1e-6) - on(-1e-6)) / 2e-6;
+        assert!((slope[0] - difference).abs() < 1e-3 * slope[0].abs() + 1e-3);
+    }
+
+    #[test]
+    fn its_bands_widen_with_the_speed() {
+        let event = event();
+        let model = Scattered(event.clone());
+        let posterior = Posterior::new(&model).unwrap();
+        let effort = Effort { chains: 2, draws: 4000, warmup: 2000 };
+        let walk = MetropolisHastings::adaptive(&effort);
+        let found = infer(&walk, &posterior, Seed::new(1), &Quiet).unwrap();
+        let draws = found.draws.unwrap();
+        // 60 values tell the share to a tenth.
+        assert!((draws.mean()[1] - TRUTH[1]).abs() < 0.04);
+        let times = event.velocity.times();
+        let bands =
+            posterior_predictive(&posterior, &draws, times, Seed::new(2))
+                .unwrap();
+        let width = |i: usize| bands.full_high[i] - bands.full_low[i];
+        let ratio = width(59) / width(9);
+        // The speed is 6 times as high; 2000 draws tell a band to 5 %.
+        assert!((4.8..7.2).contains(&ratio), "{ratio}");
+        let inside = bands.coverage(event.velocity.values());
+        assert!((0.78..=1.0).contains(&inside), "{inside}");
     }
 }

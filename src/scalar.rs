@@ -475,6 +475,69 @@ operator!(
 
 use std::ops::RemAssign;
 
+/// The same of references, as iterators over data hand them out.
+macro_rules! of_references {
+    ($($trait:ident $name:ident $assign:ident $assign_name:ident),*) => {$(
+        of_references!(@one $trait $name, Real<K>, &f64);
+        of_references!(@one $trait $name, &f64, Real<K>);
+        of_references!(@one $trait $name, Real<K>, &Real<K>);
+        of_references!(@one $trait $name, &Real<K>, Real<K>);
+        of_references!(@one $trait $name, &Real<K>, &Real<K>);
+        of_references!(@one $trait $name, &Real<K>, f64);
+        of_references!(@one $trait $name, f64, &Real<K>);
+        of_references!(@one $trait $name, &Real<K>, &f64);
+        of_references!(@one $trait $name, &f64, &Real<K>);
+        of_references!(@assign $assign $assign_name, &f64);
+        of_references!(@assign $assign $assign_name, &Real<K>);
+    )*};
+    (@one $trait:ident $name:ident, $left:ty, $right:ty) => {
+        impl<K: Kind> $trait<$right> for $left {
+            type Output = Real<K>;
+            #[inline(always)]
+            fn $name(self, other: $right) -> Real<K> {
+                $trait::$name(self.number(), other.number())
+            }
+        }
+    };
+    (@assign $assign:ident $assign_name:ident, $right:ty) => {
+        impl<K: Kind> $assign<$right> for Real<K> {
+            #[inline(always)]
+            fn $assign_name(&mut self, other: $right) {
+                $assign::$assign_name(self, other.number());
+            }
+        }
+    };
+}
+
+/// A number, of itself or of a reference to it.
+trait Copied {
+    type Number;
+    fn number(&self) -> Self::Number;
+}
+
+impl Copied for f64 {
+    type Number = Self;
+    #[inline(always)]
+    fn number(&self) -> Self {
+        *self
+    }
+}
+
+impl<K: Kind> Copied for Real<K> {
+    type Number = Self;
+    #[inline(always)]
+    fn number(&self) -> Self {
+        *self
+    }
+}
+
+of_references!(
+    Add add AddAssign add_assign,
+    Sub sub SubAssign sub_assign,
+    Mul mul MulAssign mul_assign,
+    Div div DivAssign div_assign
+);
+
 impl<K: Kind> Neg for Real<K> {
     type Output = Self;
     #[inline(always)]

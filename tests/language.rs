@@ -267,6 +267,10 @@ impl<K: Kind> Prior<K> for Shifted<K> {
         Support::Above(self.low)
     }
 
+    fn is_proper(&self) -> bool {
+        true
+    }
+
     fn quantile(&self, p: f64) -> Option<f64> {
         Some(self.low.value() - (-p).ln_1p())
     }
@@ -371,4 +375,65 @@ fn a_list_in_one_of_several_blocks_has_two_indices() {
             "sigma2[2]",
         ]
     );
+}
+
+model! {
+    struct Faulty { data: Vec<f64>, more: [f64; 1] }
+
+    mean ~ self::Peaked();
+    likelihood {
+        more ~ Normal(mean, 1.0);
+        data ~ Normal(mean, 1.0);
+    }
+}
+
+/// A prior of one's own whose quantiles nobody has worked out:
+/// p(x) = 1 - |x| between -1 and 1.
+#[derive(Debug, Clone, Copy)]
+struct Peaked;
+
+impl Peaked {
+    fn new() -> Self {
+        Self
+    }
+}
+
+impl<K: Kind> Prior<K> for Peaked {
+    fn log_density(&self, x: Real<K>) -> Real<K> {
+        (1.0 - x.abs()).ln()
+    }
+
+    fn support(&self) -> Support<K> {
+        Support::Between(Real::new(-1.0), Real::new(1.0))
+    }
+
+    fn is_proper(&self) -> bool {
+        true
+    }
+
+    fn quantile(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn draw(&self, rng: &mut Rng) -> Option<f64> {
+        let half = Uniform::<couloir::scalar::Plain>::new(-0.5, 0.5);
+        Some(half.draw(rng)? + half.draw(rng)?)
+    }
+}
+
+#[test]
+fn a_prior_without_quantiles_is_proper_where_it_says_so() {
+    let model = Faulty::new(vec![0.2; 3], [0.1]);
+    let posterior = couloir::model::Posterior::new(&model).unwrap();
+    assert!(posterior.is_proper());
+    assert!(posterior.require_proper("smc").is_ok());
+}
+
+#[test]
+fn a_datum_that_is_no_number_is_named() {
+    let model = Faulty::new(vec![0.2, 0.3, f64::NAN], [0.1]);
+    let error = model.evaluate(Point::Natural(&[0.0]), None).unwrap_err();
+    assert!(error.is_input());
+    let text = error.to_string();
+    assert!(text.starts_with("data: value 3 of 3 is NaN; expected"), "{text}");
 }

@@ -328,7 +328,15 @@ impl Writer<'_> {
             indexed(label(&field.name, &field.label, &unit), count)
         };
         match &field.value {
-            Value::Prior(prior) => self.scalar(&label(), prior),
+            Value::Prior(prior) => {
+                let (kind, value) = (self.kind, self.scalar(&label(), prior));
+                let at = Span::mixed_site().located_at(prior.path.span());
+                quote_spanned! {at=>
+                    ::couloir::block::OneNumber::<::couloir::Real<#kind>>::of(
+                        #value
+                    )
+                }
+            }
             Value::Priors(priors) => self.list(&label(), priors),
             Value::Repeated(prior, length) => {
                 let span = prior.path.span();
@@ -399,7 +407,9 @@ impl Writer<'_> {
 
     fn body(&self, body: &Body) -> TokenStream {
         let inside = self.pieces(&body.pieces);
-        braced(inside, body.braces)
+        let block = braced(inside, body.braces);
+        // Of a single `for` on one line rustc thinks the braces are too many.
+        quote!(#[allow(unused_braces)] #block)
     }
 
     fn pieces(&self, pieces: &[Piece]) -> TokenStream {
@@ -430,7 +440,11 @@ impl Writer<'_> {
             }
             Sampling::Distribution(distribution) => {
                 let law = self.distribution(distribution);
-                quote_spanned!(at=> #run.observe_each(#data, #law)?)
+                let place = written(&line.data);
+                quote_spanned! {at=>
+                    #run.observe_each(#data, #law)
+                        .map_err(|stop| stop.within(#place))?
+                }
             }
         }
     }
@@ -475,6 +489,12 @@ fn braced(inside: TokenStream, span: Span) -> TokenStream {
     let mut group = Group::new(proc_macro2::Delimiter::Brace, inside);
     group.set_span(span);
     TokenTree::Group(group).into()
+}
+
+/// An expression as the user wrote it.
+fn written(given: &Expr) -> String {
+    let plain = || given.to_token_stream().to_string().replace(' ', "");
+    given.span().source_text().unwrap_or_else(plain)
 }
 
 /// `&given`, with parentheses where it takes them.

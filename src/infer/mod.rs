@@ -9,6 +9,7 @@ mod adapt;
 mod backends;
 mod check;
 mod climb;
+mod convergence;
 mod display;
 mod estimate;
 mod groups;
@@ -26,6 +27,7 @@ pub(crate) use adapt::Frozen;
 pub use backends::*;
 pub(crate) use climb::{Climb, Landscape, Slope};
 pub use climb::{Peak, climb};
+pub(crate) use convergence::convergence;
 pub(crate) use estimate::Precision;
 pub use groups::{Group, Grouped};
 pub use proposal::Mixture;
@@ -36,7 +38,7 @@ pub(crate) use weights::systematic;
 use std::fmt::Debug;
 use std::time::Instant;
 
-use crate::draws::{Draws, log_sum_exp};
+use crate::draws::{Draws, Summary, log_sum_exp};
 use crate::error::{Error, Result};
 use crate::model::{Cost, Posterior};
 use crate::seed::Seed;
@@ -77,6 +79,9 @@ pub trait Backend: Debug + Sync {
 pub struct Inference {
     /// Draws from the posterior, of the parameters as named.
     pub draws: Option<Draws>,
+    /// The figures of each parameter, where the draws are of chains: what
+    /// the warnings about those were read off.
+    pub summaries: Vec<Summary>,
     /// The posterior mode.
     pub mode: Option<Mode>,
     /// Each parameter's posterior without Monte Carlo error, where the backend
@@ -101,10 +106,12 @@ pub struct Evidence {
     pub method: String,
 }
 
-/// Runs a backend on a posterior and adds what it cost.
+/// Runs a backend on a posterior and adds what it cost, and whether chains
+/// have converged.
 ///
 /// # Errors
-/// As [`Backend::explore`].
+/// As [`Backend::explore`], and a model whose parameters are not the same at
+/// all draws.
 pub fn infer(
     backend: &dyn Backend,
     posterior: &Posterior<'_>,
@@ -122,6 +129,7 @@ pub fn infer(
         rejections: after.rejections - before.rejections,
         seconds: begun.elapsed().as_secs_f64(),
     };
+    convergence::check(posterior, &mut inference)?;
     Ok(inference)
 }
 

@@ -46,6 +46,12 @@ pub trait Listener<K: Kind> {
         Ok(())
     }
 
+    /// Whether data are scored: what replaces them asks for no density of
+    /// what stands there.
+    fn scores(&self) -> bool {
+        true
+    }
+
     /// One value was scored by itself.
     fn element(
         &mut self,
@@ -103,7 +109,7 @@ impl Listener<Plain> for Collector {
         c.units.push(declaration.label.unit().to_owned());
         c.natural.push(declaration.value);
         c.line.push(support.to_line(declaration.value));
-        c.proper.push(declaration.prior.quantile(0.5).is_some());
+        c.proper.push(declaration.prior.is_proper());
         c.bounds.push(match support {
             Support::Line => (f64::NEG_INFINITY, f64::INFINITY),
             Support::Above(low) => (low.value(), f64::INFINITY),

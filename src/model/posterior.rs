@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use super::information::Information;
 use super::listener::{Collected, Collector};
 use super::program::{Density, Model, Point, Weights};
+use super::run::SAME_PARAMETERS;
 use crate::error::{Error, Result};
 use crate::seed::Rng;
 
@@ -42,7 +43,8 @@ pub struct Cost {
 pub struct Posterior<'m> {
     model: &'m dyn Model,
     parameters: Vec<Parameter>,
-    proper: bool,
+    /// The first parameter whose prior is improper.
+    improper: Option<usize>,
     tally: Tally,
 }
 
@@ -82,7 +84,7 @@ impl<'m> Posterior<'m> {
                 .zip(found.bounds)
                 .map(|((name, unit), bounds)| Parameter { name, unit, bounds })
                 .collect(),
-            proper: found.proper.iter().all(|p| *p),
+            improper: found.proper.iter().position(|proper| !proper),
             tally: Tally::default(),
         })
     }
@@ -100,7 +102,7 @@ impl<'m> Posterior<'m> {
     /// Whether every prior is proper, so that it can be drawn from and an
     /// evidence exists.
     pub fn is_proper(&self) -> bool {
-        self.proper
+        self.improper.is_none()
     }
 
     /// An input error unless every prior is proper.
@@ -108,12 +110,11 @@ impl<'m> Posterior<'m> {
     /// # Errors
     /// A flat prior.
     pub fn require_proper(&self, backend: &str) -> Result<()> {
-        if self.proper {
-            return Ok(());
-        }
+        let Some(index) = self.improper else { return Ok(()) };
         Err(Error::input(format!(
-            "{backend} needs proper priors, but one is Flat(); give that \
-             parameter a prior that integrates to 1, or use mh or map"
+            "{backend} needs proper priors, but that of {} is improper, as \
+             Flat() is; give it one that integrates to 1, or use mh or map",
+            self.parameters[index].name
         )))
     }
 
@@ -161,7 +162,28 @@ impl<'m> Posterior<'m> {
         let mut collector = Collector::default();
         let density = self.model.evaluate(point, Some(&mut collector))?;
         self.tally.count(DENSITIES, &density);
+        self.check_names(&collector.collected.names, &density)?;
         Ok((density, collector.collected))
+    }
+
+    /// Fails where a run declared other parameters than this posterior has;
+    /// one that was rejected may have declared the first ones only.
+    fn check_names(&self, found: &[String], density: &Density) -> Result<()> {
+        let mut known = self.parameters.iter().map(|p| p.name.as_str());
+        let mut found = found.iter().map(String::as_str);
+        loop {
+            return match (known.next(), found.next()) {
+                (None, None) => Ok(()),
+                (Some(_), None) if density.rejected.is_some() => Ok(()),
+                (Some(name), Some(other)) if name == other => continue,
+                (name, other) => Err(Error::input(format!(
+                    "the model declared {} where it had {} before; \
+                     {SAME_PARAMETERS}",
+                    other.unwrap_or("no further parameter"),
+                    name.unwrap_or("no further one"),
+                ))),
+            };
+        }
     }
 
     /// The parameters' values at a place on the real line.

@@ -3,7 +3,7 @@
 use super::information::{Information, information};
 use super::listener::Listener;
 use super::number::Number;
-use super::run::{Run, Source};
+use super::run::{Run, SAME_PARAMETERS, Source};
 use crate::error::{Error, Outcome, Result, Stop};
 use crate::scalar::{Grad, Plain, Real};
 use crate::seed::Rng;
@@ -250,8 +250,9 @@ pub(super) fn run<K: Number, P: Program>(
             Ok(()) => {}
         }
         if expected.is_some_and(|n| n != run.position()) {
-            return Err(Error::inference(format!(
-                "the point has {} coordinates, the model {} parameters",
+            return Err(Error::input(format!(
+                "there are values for {} parameters, and the model asked for \
+                 {}; {SAME_PARAMETERS}",
                 expected.unwrap_or(0),
                 run.position()
             )));

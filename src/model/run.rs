@@ -10,7 +10,7 @@ use crate::context::Context;
 use crate::declared::Declared;
 use crate::error::{Error, Outcome, Stop};
 use crate::mechanism::Change;
-use crate::noise::{Altered, Noise};
+use crate::noise::{Altered, Noise, Wide};
 use crate::observe::{Prediction, Series};
 use crate::prior::{Prior, Support};
 use crate::scalar::{Kind, Real};
@@ -246,7 +246,7 @@ impl<'r, K: Kind> Run<'r, K> {
         label: Label<'_>,
         prior: P,
     ) -> Result<Real<K>, Stop> {
-        let x = self.value(&prior)?;
+        let x = self.value(&prior, &label)?;
         self.position += 1;
         let log_density = prior.log_density(x);
         self.log_prior += log_density;
@@ -263,18 +263,24 @@ impl<'r, K: Kind> Run<'r, K> {
         Ok(x)
     }
 
-    fn value<P: Prior<K>>(&mut self, prior: &P) -> Result<Real<K>, Stop> {
+    fn value<P: Prior<K>>(
+        &mut self,
+        prior: &P,
+        label: &Label<'_>,
+    ) -> Result<Real<K>, Stop> {
         let i = self.position;
+        let beyond = || one_too_many(label, i);
         match &mut self.source {
             Source::Line { z, first } => {
                 let direction = i.wrapping_sub(*first);
-                let z = Real::variable(*z.get(i).ok_or(TOO_FEW)?, direction);
+                let z = *z.get(i).ok_or_else(beyond)?;
+                let z = Real::variable(z, direction);
                 let (x, log_jacobian) = prior.support().from_line(z);
                 self.log_jacobian += log_jacobian;
                 Ok(x)
             }
             Source::Natural { x } => {
-                Ok(Real::variable(*x.get(i).ok_or(TOO_FEW)?, i))
+                Ok(Real::variable(*x.get(i).ok_or_else(beyond)?, i))
             }
             Source::Prior { rng } => {
                 let draw = prior.draw(rng).ok_or(Stop::Reject(
@@ -353,7 +359,7 @@ impl<'r, K: Kind> Run<'r, K> {
                 let value = values.next().copied().unwrap_or(f64::NAN);
                 residuals.push(value - predicted);
             })?;
-            return self.score(series, &residuals, noise);
+            return self.score_wide(series, &residuals, noise);
         };
         let mut covariate = self.context.buffer();
         let mut recorded = series.times().iter().zip(series.values());
@@ -371,14 +377,34 @@ impl<'r, K: Kind> Run<'r, K> {
         };
         let residuals = &residuals[..series.len()];
         if change.noise.is_none() {
-            return self.score(series, residuals, noise);
+            return self.score_wide(series, residuals, noise);
         }
         let altered = Altered {
             base: noise,
             change: change.noise,
             covariate: &covariate,
         };
-        self.score(series, residuals, &altered)
+        self.score_wide(series, residuals, &altered)
+    }
+
+    /// Scores residuals with errors as wide as the noise says they are where
+    /// so much is predicted.
+    #[inline]
+    fn score_wide<N: Noise<K>>(
+        &mut self,
+        series: &Series,
+        residuals: &[Real<K>],
+        noise: &N,
+    ) -> Outcome {
+        let mut widths = self.context.buffer();
+        for (value, residual) in series.values().iter().zip(residuals) {
+            match noise.width(*value - *residual) {
+                Some(width) => widths.push(width),
+                None => return self.score(series, residuals, noise),
+            }
+        }
+        let wide = Wide::new(noise, &widths, series.grid())?;
+        self.score(series, residuals, &wide)
     }
 
     /// Scores residuals and lets the listener hear them.
@@ -392,6 +418,9 @@ impl<'r, K: Kind> Run<'r, K> {
         self.admit_data()?;
         if let Some(listener) = &mut self.listener {
             listener.series(series, residuals, noise)?;
+            if !listener.scores() {
+                return Ok(());
+            }
         }
         self.log_likelihood +=
             noise.log_likelihood(series.grid(), residuals)?;
@@ -420,12 +449,19 @@ impl<'r, K: Kind> Run<'r, K> {
         distribution: P,
     ) -> Outcome {
         self.admit_data()?;
-        for &value in data.data() {
+        let data = data.data();
+        let scores = self.listener.as_ref().is_none_or(|l| l.scores());
+        for (i, &value) in data.iter().enumerate() {
+            if scores && !value.is_finite() {
+                return Err(not_finite(i, data));
+            }
             let log_density = distribution.log_density(Real::new(value));
             if let Some(listener) = &mut self.listener {
                 listener.element(value, log_density, &distribution);
             }
-            self.log_likelihood += log_density;
+            if scores {
+                self.log_likelihood += log_density;
+            }
         }
         if self.log_likelihood.value() == f64::NEG_INFINITY {
             return Err(Stop::Reject("a value lies outside its distribution"));
@@ -434,7 +470,32 @@ impl<'r, K: Kind> Run<'r, K> {
     }
 }
 
-const TOO_FEW: Stop = Stop::Reject("the point has too few coordinates");
+/// A datum that is no number: no parameter's value would mend it.
+#[cold]
+fn not_finite(index: usize, data: &[f64]) -> Stop {
+    Stop::Fail(Error::input(format!(
+        "value {} of {} is {}; expected a finite number: mend it, or leave \
+         out what was not measured",
+        index + 1,
+        data.len(),
+        data[index]
+    )))
+}
+
+/// A parameter asked for beyond those that a point has a value for.
+#[cold]
+fn one_too_many(label: &Label<'_>, known: usize) -> Stop {
+    Stop::Fail(Error::input(format!(
+        "{} is one parameter more than the {known} that there are values \
+         for; {SAME_PARAMETERS}",
+        label.name()
+    )))
+}
+
+/// What a model has to keep to, and how.
+pub(super) const SAME_PARAMETERS: &str = "the number, names and order of a model's parameters must not depend on \
+     their values: declare the same ones always, as many as there can be, \
+     and use those that apply";
 
 /// Numbers that were observed: one, or several.
 #[diagnostic::on_unimplemented(
@@ -491,6 +552,9 @@ impl<K: Kind, P: Prior<K> + ?Sized> Prior<K> for &P {
     }
     fn support(&self) -> Support<K> {
         (**self).support()
+    }
+    fn is_proper(&self) -> bool {
+        (**self).is_proper()
     }
     fn quantile(&self, p: f64) -> Option<f64> {
         (**self).quantile(p)

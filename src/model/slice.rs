@@ -192,6 +192,10 @@ impl Listener<Plain> for Heard<'_> {
         self.listener.block(name);
     }
 
+    fn scores(&self) -> bool {
+        self.listener.scores()
+    }
+
     fn series(
         &mut self,
         series: &Series,

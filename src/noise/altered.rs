@@ -174,6 +174,10 @@ impl<K: Kind, N: Noise<K> + ?Sized> Noise<K> for Altered<'_, K, N> {
         self.base.stationary()
     }
 
+    fn width(&self, predicted: Real<K>) -> Option<Real<K>> {
+        self.base.width(predicted)
+    }
+
     fn standardise(&self, deviate: f64) -> f64 {
         if self.is_tailed() {
             normal_score(deviate, 1.0 / self.change.tail.value())

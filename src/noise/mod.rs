@@ -14,6 +14,7 @@ mod iid;
 mod student;
 #[cfg(test)]
 mod tests;
+mod wide;
 
 pub use altered::{Alteration, Altered};
 pub use ar::Ar;
@@ -22,6 +23,7 @@ pub use catalogue::{NoiseEntry, NoiseFor, NoiseKind, names, parse};
 pub use grid::{Grid, Spacing};
 pub use iid::Iid;
 pub use student::Student;
+pub use wide::Wide;
 
 use crate::error::{Error, Stop};
 use crate::scalar::{Kind, Real};
@@ -50,7 +52,9 @@ pub struct Stationary {
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a noise",
     label = "the last summand behind `~` has to be a noise block, such as \
-             `errors` declared by `errors ~ Iid {{ .. }};`"
+             `errors` declared by `errors ~ Iid {{ .. }};`",
+    note = "a noise of one's own computes with `Real<K>`, not with `f64`: \
+            `impl<K: Kind> Noise<K> for Own<Real<K>>`"
 )]
 pub trait Noise<K: Kind> {
     /// Whether this noise is defined at those times; an input error that
@@ -80,6 +84,17 @@ pub trait Noise<K: Kind> {
         let mut total = Real::new(0.0);
         self.walk(at, residuals, &mut |value| total += value.log_density)?;
         Ok(total)
+    }
+
+    /// By what factor errors are wider where this is predicted, in the
+    /// recording's unit; `None` where it does not matter. What `walk` and
+    /// `draw` then see and make are errors over their width.
+    ///
+    /// Errors of a tenth of the speed, and of 0.2 m/s at rest, are a noise
+    /// of variance 1 with the width 0.2 + 0.1 |v|.
+    #[inline]
+    fn width(&self, _predicted: Real<K>) -> Option<Real<K>> {
+        None
     }
 
     /// The standard normal deviate that a [`Conditional::deviate`] stands

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use super::extent::path_length;
 use super::flow::Flow;
+use super::scatter::reach_error;
 use super::series::{Quantity, Series};
 use crate::declared::Declared;
 use crate::error::{Error, Result, Stop};
@@ -17,6 +18,10 @@ use crate::scalar::{Kind, Real};
 
 /// A window \[s\] so short that a mean over it is the value itself.
 const NO_WINDOW: f64 = 1e-6;
+
+/// How many standard errors of the distance that speeds add up to are put
+/// down to their scatter: more happen once in 30 000 recordings.
+const MOST_ERRORS: f64 = 4.0;
 
 /// One avalanche, or another mass that slid, with its recording.
 ///
@@ -398,11 +403,13 @@ impl Event {
             }
             let reach = self.reach(series);
             let left = self.track.length() - self.distance;
-            if reach > left {
+            let errors = MOST_ERRORS * reach_error(series);
+            if reach > left + errors {
                 return Err(Error::input(format!(
-                    "the recording covers {reach:.1} m, but the track has \
-                     only {left:.1} m beyond the release; extend the track, \
-                     or shorten the recording"
+                    "the recording covers {reach:.1} m ({errors:.1} m of it \
+                     may be its scatter), but the track has only {left:.1} m \
+                     beyond the release; extend the track, or shorten the \
+                     recording"
                 )));
             }
         }

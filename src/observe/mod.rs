@@ -7,6 +7,7 @@
 mod event;
 mod extent;
 mod flow;
+mod scatter;
 mod series;
 
 pub use crate::mechanism::Extent;

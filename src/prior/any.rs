@@ -129,6 +129,10 @@ macro_rules! families {
                 }
             }
 
+            fn is_proper(&self) -> bool {
+                self.is_proper()
+            }
+
             fn quantile(&self, p: f64) -> Option<f64> {
                 self.quantile(p)
             }

@@ -59,6 +59,10 @@ impl<K: Kind> Prior<K> for Beta<K> {
         Support::Between(Real::new(0.0), Real::new(1.0))
     }
 
+    fn is_proper(&self) -> bool {
+        true
+    }
+
     fn quantile(&self, p: f64) -> Option<f64> {
         let (a, b) = self.values()?;
         quantile_of(&self.support(), p, |p| {

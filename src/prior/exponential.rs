@@ -47,6 +47,10 @@ impl<K: Kind> Prior<K> for Exponential<K> {
         Support::Above(Real::new(0.0))
     }
 
+    fn is_proper(&self) -> bool {
+        true
+    }
+
     fn quantile(&self, p: f64) -> Option<f64> {
         let mean = self.value()?;
         quantile_of(&self.support(), p, |p| -mean * (-p).ln_1p())

@@ -52,6 +52,10 @@ impl<K: Kind> Prior<K> for HalfNormal<K> {
         Support::Above(Real::new(0.0))
     }
 
+    fn is_proper(&self) -> bool {
+        true
+    }
+
     fn quantile(&self, p: f64) -> Option<f64> {
         let scale = self.value()?;
         quantile_of(&self.support(), p, |p| scale * (SQRT_2 * erf_inv(p)))

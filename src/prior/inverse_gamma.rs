@@ -59,6 +59,10 @@ impl<K: Kind> Prior<K> for InverseGamma<K> {
         Support::Above(Real::new(0.0))
     }
 
+    fn is_proper(&self) -> bool {
+        true
+    }
+
     fn quantile(&self, p: f64) -> Option<f64> {
         let (shape, scale) = self.values()?;
         quantile_of(&self.support(), p, |p| {

@@ -55,6 +55,10 @@ impl<K: Kind> Prior<K> for LogNormal<K> {
         Support::Above(Real::new(0.0))
     }
 
+    fn is_proper(&self) -> bool {
+        true
+    }
+
     fn quantile(&self, p: f64) -> Option<f64> {
         let (mean, sd) = self.values()?;
         quantile_of(&self.support(), p, |p| {

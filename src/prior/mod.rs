@@ -55,9 +55,15 @@ pub trait Prior<K: Kind> {
     /// Where the density is positive.
     fn support(&self) -> Support<K>;
 
+    /// Whether the density has an integral, which is then 1: what is improper
+    /// has no draws, and a model with it no evidence. Said by every
+    /// distribution, never guessed from what else it can do.
+    fn is_proper(&self) -> bool;
+
     /// The value below which a draw falls with probability `p`: inside the
     /// support for 0 < p < 1, its ends for 0 and 1. `None` for an improper
-    /// distribution, impossible arguments, or a `p` that is no probability.
+    /// distribution, impossible arguments, a `p` that is no probability, or
+    /// where nobody knows it.
     fn quantile(&self, p: f64) -> Option<f64>;
 
     /// One draw, strictly inside the support; `None` for an improper

@@ -53,6 +53,10 @@ impl<K: Kind> Prior<K> for Normal<K> {
         Support::Line
     }
 
+    fn is_proper(&self) -> bool {
+        true
+    }
+
     fn quantile(&self, p: f64) -> Option<f64> {
         let (mean, sd) = self.values()?;
         quantile_of(&self.support(), p, |p| mean + sd * normal_quantile(p))

@@ -77,6 +77,10 @@ impl<K: Kind> Prior<K> for StudentT<K> {
         Support::Line
     }
 
+    fn is_proper(&self) -> bool {
+        true
+    }
+
     fn quantile(&self, p: f64) -> Option<f64> {
         let (freedom, location, scale) = self.values()?;
         quantile_of(&self.support(), p, |p| {

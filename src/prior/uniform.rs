@@ -50,6 +50,10 @@ impl<K: Kind> Prior<K> for Uniform<K> {
         Support::Between(self.low, self.high)
     }
 
+    fn is_proper(&self) -> bool {
+        true
+    }
+
     fn quantile(&self, p: f64) -> Option<f64> {
         let (low, width) = self.values()?;
         quantile_of(&self.support(), p, |p| low + p * width)

@@ -16,6 +16,7 @@ pub fn reproduction_json(found: &Reproduction) -> Value {
     json!({
         "schema": 1,
         "samples": found.samples,
+        "left_out": found.left_out,
         "seed": found.seed,
         "priors": priors,
         "readings": found.readings.iter().map(reading).collect::<Vec<_>>(),
@@ -72,6 +73,7 @@ fn reading(reading: &Reading) -> Value {
     json!({
         "what": reading.what,
         "samples": reading.samples,
+        "left_out": reading.left_out,
         "coverage": {
             "M0": shares(&reading.covered[0]),
             "M1": shares(&reading.covered[1]),

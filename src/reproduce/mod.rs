@@ -30,6 +30,9 @@ use crate::seed::Seed;
 pub struct Reproduction {
     /// How many synthetic series.
     pub samples: usize,
+    /// How many more were left out, since their errors carry them off the
+    /// track.
+    pub left_out: usize,
     /// The seed.
     pub seed: u64,
     /// Table 5 and Figure 8 under each prior of xi: wide, then printed.
@@ -66,7 +69,8 @@ pub fn reproduce(
     let root = Seed::new(seed);
     let few = samples.min(FEW);
     let seen = coverage::synthetic(samples, root.child(0))?;
-    progress.begin("calibrating", Some((4 * samples + 6 * few) as u64));
+    let steps = 4 * seen.len() + 6 * few;
+    progress.begin("calibrating", Some(steps as u64));
     let study = |name, priors, place: u64| {
         coverage::study(name, priors, &seen, root.child(place), progress)
     };
@@ -82,7 +86,8 @@ pub fn reproduce(
     let first =
         experiment::plan(1.0, 0.0)?.with_recording(first_of(&seen)?)?;
     Ok(Reproduction {
-        samples,
+        samples: seen.len(),
+        left_out: samples - seen.len(),
         seed,
         priors: [wide, printed],
         readings,

@@ -46,6 +46,7 @@ pub fn words(found: &Reproduction) -> Vec<String> {
          so its Table 4 cannot be computed again.",
         found.samples
     )];
+    said.extend(left_out(found));
     said.extend([wide, printed].map(|study| {
         let bf = study.log10_bf();
         format!(
@@ -67,7 +68,7 @@ pub fn words(found: &Reproduction) -> Vec<String> {
     said.push(format!(
         "Simulation-based calibration of both models, {} replications: of \
          {count} rank histograms the least even one has p = {least:.3}.",
-        2 * found.samples
+        2 * (found.samples + found.left_out)
     ));
     let [right, wrong] = &found.windows;
     said.push(format!(
@@ -88,6 +89,19 @@ pub fn words(found: &Reproduction) -> Vec<String> {
         found.case.delta1, found.case.delta2
     ));
     said
+}
+
+/// How many series are missing, where some are.
+fn left_out(found: &Reproduction) -> Option<String> {
+    let others = found.readings.iter().chain(&found.windows);
+    let others: usize = others.map(|reading| reading.left_out).sum();
+    (found.left_out + others > 0).then(|| {
+        format!(
+            "{} series of the study and {others} of its other readings are \
+             left out: their errors carry them off the track.",
+            found.left_out
+        )
+    })
 }
 
 fn percent(count: usize, samples: usize) -> String {

@@ -3,3 +3,4 @@
 
 mod inside_a_function;
 mod names_of_its_own;
+mod on_one_line;

@@ -110,6 +110,10 @@ impl<K: Kind> Prior<K> for Factor<K> {
         Support::Line
     }
 
+    fn is_proper(&self) -> bool {
+        false
+    }
+
     fn quantile(&self, _: f64) -> Option<f64> {
         None
     }

@@ -153,7 +153,9 @@ pub enum Varies {
     label = "this cannot resist a sliding mass",
     note = "declare a friction block, such as `friction ~ Coulomb {{ mu: \
             Gamma(9.0, 0.03) }};`, and pass it by reference: \
-            `event.slide(&friction)?`"
+            `event.slide(&friction)?`",
+    note = "a law of one's own computes with `Real<K>`, not with `f64`: \
+            `impl<K: Kind> Friction<K> for Own<Real<K>>`"
 )]
 pub trait Friction<K: Kind> {
     /// On what the rates depend. Said by every law, never guessed: a law

@@ -1,0 +1,17 @@
+//! A likelihood on one line, without a warning; references to numbers.
+#![deny(warnings)]
+use couloir::model;
+
+model! {
+    struct OneLine { many: Vec<f64>, at: Vec<f64> }
+
+    mean ~ Normal(0.0, 1.0);
+    slope[2] ~ Normal(0.0, 1.0);
+    let steeper = slope.iter().map(|s| 2.0 * s - &1.0).sum::<couloir::Real<_>>();
+    likelihood { for (y, x) in many.iter().zip(at) { y ~ Normal(mean + steeper * x, 1.0); } }
+}
+
+#[test]
+fn a_likelihood_on_one_line() {
+    let _ = OneLine::new;
+}
