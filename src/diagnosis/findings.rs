@@ -12,6 +12,7 @@ use crate::predict::Bands;
 
 /// What a diagnosis says of a model and its recordings.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Diagnosis {
     /// The event's name; several, joined by " + ".
     pub event: String,
@@ -53,6 +54,7 @@ pub struct Diagnosis {
 
 /// The model as it was, and how it stands to the recording.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Baseline {
     /// The friction law.
     pub friction: String,
@@ -110,6 +112,7 @@ impl Verdict {
 
 /// A stretch in which simulation and recording differ.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Mismatch {
     /// Along what the stretch is given.
     pub axis: Axis,
@@ -141,6 +144,7 @@ pub struct Mismatch {
 
 /// A parameter in figures.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Told {
     /// Its name.
     pub name: String,
@@ -160,6 +164,7 @@ pub struct Told {
 
 /// A mechanism as the evidence judges it.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Judged {
     /// Its name; "none" for the model as it was.
     pub name: String,
@@ -189,6 +194,7 @@ pub struct Judged {
 
 /// A combination of mechanisms beside the selected one.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Rival {
     /// Their names.
     pub names: Vec<String>,
@@ -198,6 +204,7 @@ pub struct Rival {
 
 /// Before and after.
 #[derive(Debug, Clone, Copy, Default)]
+#[non_exhaustive]
 pub struct Improvement {
     /// Of the corrected model against the one before.
     pub log10_bayes_factor: f64,
@@ -220,6 +227,7 @@ pub struct Improvement {
 
 /// A figure before and after.
 #[derive(Debug, Clone, Copy, Default)]
+#[non_exhaustive]
 pub struct Pair {
     /// Of the model as it was.
     pub before: f64,
@@ -229,6 +237,7 @@ pub struct Pair {
 
 /// The corrected model, written out.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Corrected {
     /// The equation of motion, and what else changed, one line each.
     pub equation: Vec<String>,
@@ -240,6 +249,7 @@ pub struct Corrected {
 
 /// One recording with what both models predict of it.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Pictured {
     /// The event's name.
     pub event: String,

@@ -10,6 +10,7 @@ use crate::model::Assembled;
 
 /// What to know of a model before it is diagnosed.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Options {
     /// Where all random numbers start.
     pub seed: u64,
