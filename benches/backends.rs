@@ -12,7 +12,7 @@ use couloir::model::Posterior;
 
 fn backends(criterion: &mut Criterion) {
     let model = reference::M1::new(reference::event());
-    let effort = Effort { chains: 4, draws: 2_500, warmup: 1_000 };
+    let effort = Effort::new().chains(4).draws(2_500).warmup(1_000);
     let mut group = criterion.benchmark_group("backend");
     group.sample_size(10);
     for entry in BACKENDS {

@@ -103,7 +103,7 @@ fn c_flow_seconds(folder: &Path, program: &Path) -> f64 {
 
 /// CPU seconds of four chains of 50 000 steps on one thread.
 fn chains_seconds(model: &reference::M1) -> f64 {
-    let effort = Effort { chains: 4, draws: 50_000, warmup: 0 };
+    let effort = Effort::new().chains(4).draws(50_000).warmup(0);
     // As in the C program: a fixed proposal of the posterior's own shape.
     let sd = [0.0783, 132.3, 0.1865, 2.76];
     let covariance = nalgebra::DMatrix::from_fn(4, 4, |i, j| {
@@ -181,7 +181,7 @@ fn gradient_ratio(model: &reference::M1) {
 }
 
 fn threads_ratio(model: &reference::M1) {
-    let effort = Effort { chains: 4, draws: 50_000, warmup: 1_000 };
+    let effort = Effort::new().chains(4).draws(50_000).warmup(1_000);
     let backend = MetropolisHastings::adaptive(&effort);
     let pairs: Vec<(f64, f64)> = (0..5)
         .map(|_| {

@@ -24,7 +24,7 @@ fn main() -> Result<()> {
     let posterior = Posterior::new(&model)?;
 
     // 3. The inference, by one backend after the other.
-    let effort = Effort { chains: 4, draws: 5000, warmup: 2500 };
+    let effort = Effort::new().chains(4).draws(5000).warmup(2500);
     for entry in BACKENDS {
         let backend = (entry.make)(&effort);
         let found = infer(backend.as_ref(), &posterior, Seed::new(1), &Quiet)?;

@@ -12,6 +12,7 @@ pub type List<S> = SmallVec<[S; 8]>;
 
 /// One field of a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Field {
     /// Its name, also in event files.
     pub name: &'static str,

@@ -23,6 +23,7 @@ use crate::seed::Seed;
 
 /// A calibration as it is told, with the draws behind it.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Calibration {
     /// Everything that is told.
     pub report: CalibrationReport,

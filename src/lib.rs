@@ -77,13 +77,29 @@
 //! | [`mod@reproduce`], [`challenge`] | the paper's study, computed again; hidden effects, made without the engine, and the score |
 //! | [`cli`] | the command: nothing below it prints |
 //!
+//! # Features
+//!
+//! - `cli`, on: the command and its studies; whoever only wants the library
+//!   takes `default-features = false`.
+//! - `pages`, of `cli`: results as pages of HTML.
+//! - `nuts`, off: the backend `nuts`, by the crate nuts-rs.
+//!
+//! # Crates in signatures
+//!
+//! [`nalgebra`] (a peak, a covariance), [`rand`] and [`rand_distr`] (a noise
+//! or a prior of one's own draws), [`smallvec`] (a [`block::List`]) and
+//! [`serde_json`] (a report as JSON) are re-exported. A name taken from here,
+//! such as `couloir::rand::RngExt`, is always of the version that fits.
+//!
 //! The reasons for all this are in `DESIGN.md`, the invariants in
 //! `ARCHITECTURE.md`.
 #![warn(clippy::print_stdout, clippy::print_stderr, clippy::unwrap_used)]
 
 pub mod block;
 pub mod calibrate;
+#[cfg(feature = "cli")]
 pub mod challenge;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod context;
 pub mod declared;
@@ -102,6 +118,7 @@ pub mod predict;
 pub mod prelude;
 pub mod prior;
 pub mod report;
+#[cfg(feature = "cli")]
 pub mod reproduce;
 pub mod sbc;
 pub mod scalar;
@@ -140,6 +157,15 @@ pub mod seed;
 /// # }
 /// ```
 pub use couloir_macros::model;
+
+// Their types stand in the signatures of this library: whoever uses them from
+// here cannot have another version than it has.
+pub use nalgebra;
+pub use rand;
+pub use rand_distr;
+pub use serde_json;
+pub use smallvec;
+
 pub use declared::Declared;
 pub use error::{Error, Outcome, Result, Stop};
 pub use model::{Label, Model, Number, Program, Run};

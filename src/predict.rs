@@ -14,6 +14,7 @@ use crate::seed::{Rng, Seed};
 
 /// A prediction over time: the median flow and 90 % bands about it.
 #[derive(Debug, Clone, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Bands {
     /// Times, increasing \[s\].
     pub times: Vec<f64>,

@@ -24,6 +24,7 @@ const BINS: usize = 10;
 
 /// The ranks of true values among posterior draws.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Ranks {
     /// The parameters' names, then "log likelihood".
     pub names: Vec<String>,

@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use couloir::Seed;
-//! use rand::Rng;
+//! use couloir::rand::Rng;
 //! let chain = |i| Seed::new(1).child(i).rng().next_u64();
 //! assert_eq!(chain(3), chain(3));
 //! assert_ne!(chain(3), chain(4));

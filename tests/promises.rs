@@ -140,7 +140,7 @@ impl Backend for Rejection {
             parameters.iter().map(|p| p.unit.clone()).collect(),
         )?;
         draws.push_chain(rows, None)?;
-        Ok(Inference { draws: Some(draws), ..Inference::default() })
+        Ok(Inference::of_draws(draws))
     }
 }
 

@@ -68,7 +68,7 @@ fn assert_quantiles(draws: &Draws, model: &str) {
 
 #[test]
 fn every_quantile_by_metropolis_hastings() {
-    let effort = Effort { chains: 4, draws: 50_000, warmup: 5_000 };
+    let effort = Effort::new().chains(4).draws(50_000).warmup(5_000);
     for (noise, name) in MODELS {
         for backend in [
             MetropolisHastings::adaptive(&effort),
@@ -211,7 +211,7 @@ fn the_evidence_by_bridge_sampling() {
 /// it, a mode by its height.
 #[test]
 fn every_listed_backend_agrees_with_the_quadrature() {
-    let effort = Effort { chains: 4, draws: 20_000, warmup: 5_000 };
+    let effort = Effort::new().chains(4).draws(20_000).warmup(5_000);
     let reference = reference();
     let track = &reference["piecewise_linear_track"];
     let expected = track["lnZ0"].as_f64().unwrap();
@@ -260,7 +260,7 @@ fn the_errors_of_the_evidence_are_right() {
 
 #[test]
 fn a_seed_gives_the_same_bits_on_any_number_of_threads() {
-    let effort = Effort { chains: 3, draws: 300, warmup: 200 };
+    let effort = Effort::new().chains(3).draws(300).warmup(200);
     let smc = Smc { particles: 200, ..Smc::default() };
     let importance = ImportanceSampling { draws: 1000, pilot: smc.clone() };
     let walk = MetropolisHastings::random_walk(&effort);

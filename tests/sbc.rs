@@ -154,9 +154,9 @@ fn ranked(
 const REPLICATIONS: usize = 200;
 
 /// Enough that 99 draws kept of a chain are next to independent.
-const EFFORT: Effort = Effort { chains: 1, draws: 12_000, warmup: 3000 };
+const EFFORT: Effort = Effort::new().chains(1).draws(12_000).warmup(3000);
 /// The same of a backend whose draws are nearly independent already.
-const LIGHT: Effort = Effort { chains: 1, draws: 1000, warmup: 500 };
+const LIGHT: Effort = Effort::new().chains(1).draws(1000).warmup(500);
 
 fn effort(name: &str) -> &'static Effort {
     match name {

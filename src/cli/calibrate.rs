@@ -17,7 +17,8 @@ pub(super) struct Arguments {
     subject: Subject,
     #[command(flatten)]
     work: Work,
-    /// Backend: mh, random-walk, nuts, smc, importance, bridge or reciprocal
+    /// Backend: mh, random-walk, nuts (where built with it), smc, importance,
+    /// bridge or reciprocal
     #[arg(long, default_value = "mh", value_parser = backend_name)]
     backend: String,
     #[command(flatten)]

@@ -21,7 +21,7 @@ use std::process::ExitCode;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::error::{Error, Result};
-use crate::infer::{BACKENDS, Effort};
+use crate::infer::{Effort, backend};
 use crate::physics::friction::Laws;
 
 /// Calibrates avalanche friction laws from recordings, in a Bayesian way.
@@ -137,11 +137,9 @@ fn at_least_one(text: &str) -> Result<usize, String> {
 }
 
 fn backend_name(text: &str) -> Result<String, String> {
-    let names: Vec<_> = BACKENDS.iter().map(|entry| entry.name).collect();
-    if names.contains(&text) {
-        Ok(text.to_owned())
-    } else {
-        Err(format!("expected one of {}", names.join(", ")))
+    match backend(text, &Effort::default()) {
+        Ok(_) => Ok(text.to_owned()),
+        Err(error) => Err(error.to_string()),
     }
 }
 

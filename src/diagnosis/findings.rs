@@ -12,6 +12,7 @@ use crate::predict::Bands;
 
 /// What a diagnosis says of a model and its recordings.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Diagnosis {
     /// The event's name; several, joined by " + ".
     pub event: String,
@@ -53,6 +54,7 @@ pub struct Diagnosis {
 
 /// The model as it was, and how it stands to the recording.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Baseline {
     /// The friction law.
     pub friction: String,
@@ -138,6 +140,7 @@ pub(crate) const UNKNOWN: &str = "unknown";
 
 /// A stretch in which simulation and recording differ.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Mismatch {
     /// Along what the stretch is given.
     pub axis: Axis,
@@ -169,6 +172,7 @@ pub struct Mismatch {
 
 /// A parameter in figures.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Told {
     /// Its name.
     pub name: String,
@@ -195,6 +199,7 @@ impl Told {
 
 /// A mechanism as the evidence judges it.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Judged {
     /// Its name; "none" for the model as it was.
     pub name: String,
@@ -224,6 +229,7 @@ pub struct Judged {
 
 /// A combination of mechanisms beside the selected one.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Rival {
     /// Their names.
     pub names: Vec<String>,
@@ -233,6 +239,7 @@ pub struct Rival {
 
 /// Before and after.
 #[derive(Debug, Clone, Copy, Default)]
+#[non_exhaustive]
 pub struct Improvement {
     /// Of the corrected model against the one before.
     pub log10_bayes_factor: f64,
@@ -256,6 +263,7 @@ pub struct Improvement {
 
 /// A figure before and after.
 #[derive(Debug, Clone, Copy, Default)]
+#[non_exhaustive]
 pub struct Pair {
     /// Of the model as it was.
     pub before: f64,
@@ -265,6 +273,7 @@ pub struct Pair {
 
 /// The corrected model, written out.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Corrected {
     /// The equation of motion, and what else changed, one line each.
     pub equation: Vec<String>,
@@ -276,6 +285,7 @@ pub struct Corrected {
 
 /// One recording with what both models predict of it.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Pictured {
     /// The event's name.
     pub event: String,

@@ -26,6 +26,7 @@ pub use findings::{
 };
 pub use locate::{CELLS, FreeForce, locate};
 pub use options::Options;
+#[cfg(feature = "pages")]
 pub use tell::page::page;
 pub use tell::pictures::pictures;
 pub use tell::summary::summary;

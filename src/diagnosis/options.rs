@@ -11,6 +11,7 @@ use crate::noise::is_noise;
 
 /// What to know of a model before it is diagnosed.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Options {
     /// Where all random numbers start.
     pub seed: u64,

@@ -12,6 +12,7 @@ use crate::error::{Error, Result};
 
 /// An estimate of how well a model predicts the next value of a series.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Lfo {
     /// The expected log predictive density of the values from `least` on,
     /// each given all before it, summed.

@@ -11,6 +11,7 @@ use super::spectrum::variance;
 
 /// An estimate of how well a model predicts observations left out of its fit.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Loo {
     /// The expected log predictive density, summed over observations.
     pub elpd: f64,

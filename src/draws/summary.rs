@@ -7,6 +7,7 @@ use super::spectrum::{mean, variance};
 
 /// What is reported of one parameter; figures that do not exist are NaN.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Summary {
     /// The parameter's name.
     pub name: String,

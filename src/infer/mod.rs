@@ -76,6 +76,7 @@ pub trait Backend: Debug + Sync {
 
 /// What an inference found; `{}` prints it as a short table.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Inference {
     /// Draws from the posterior, of the parameters as named.
     pub draws: Option<Draws>,
@@ -93,6 +94,13 @@ pub struct Inference {
     pub cost: Cost,
     /// What the user should know before trusting the result.
     pub warnings: Vec<String>,
+}
+
+impl Inference {
+    /// An inference that found draws; the other fields can be set after.
+    pub fn of_draws(draws: Draws) -> Self {
+        Self { draws: Some(draws), ..Self::default() }
+    }
 }
 
 /// The evidence, p(data), with its Monte Carlo error.
@@ -152,7 +160,14 @@ impl Debug for Entry {
 
 /// How much work a backend is asked to do; what a backend has no use for, it
 /// passes over.
+///
+/// ```
+/// use couloir::infer::Effort;
+/// let effort = Effort::new().chains(2).draws(1_000).warmup(500);
+/// assert_eq!((effort.chains, effort.draws), (2, 1_000));
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Effort {
     /// Independent chains.
     pub chains: usize,
@@ -164,7 +179,32 @@ pub struct Effort {
 
 impl Default for Effort {
     fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Effort {
+    /// Four chains of 10 000 draws after 5000 steps.
+    pub const fn new() -> Self {
         Self { chains: 4, draws: 10_000, warmup: 5_000 }
+    }
+
+    /// The same with another number of chains.
+    #[must_use]
+    pub const fn chains(self, chains: usize) -> Self {
+        Self { chains, ..self }
+    }
+
+    /// The same with another number of draws kept of each chain.
+    #[must_use]
+    pub const fn draws(self, draws: usize) -> Self {
+        Self { draws, ..self }
+    }
+
+    /// The same with another number of steps for tuning.
+    #[must_use]
+    pub const fn warmup(self, warmup: usize) -> Self {
+        Self { warmup, ..self }
     }
 }
 
@@ -230,6 +270,10 @@ pub const BACKENDS: &[Entry] = &[
 pub fn backend(name: &str, effort: &Effort) -> Result<Box<dyn Backend>> {
     match BACKENDS.iter().find(|entry| entry.name == name) {
         Some(entry) => Ok((entry.make)(effort)),
+        None if name == "nuts" => Err(Error::input(
+            "backend \"nuts\" is not built in; build couloir with \
+             --features nuts, or take another backend",
+        )),
         None => {
             let names: Vec<_> = BACKENDS.iter().map(|e| e.name).collect();
             Err(Error::input(format!(

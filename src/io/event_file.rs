@@ -28,6 +28,7 @@ pub(super) const MOST_BYTES: u64 = 1 << 20;
 /// product xi h), `recording.window` 0, `model.friction` "voellmy",
 /// `model.noise` "iid", and the blocks' own priors.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct EventFile {
     /// The terrain, the start, and what was recorded.
     pub event: Event,

@@ -67,6 +67,7 @@ pub enum Role {
 
 /// Something unknown about a mechanism.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Unknown {
     /// Its name.
     pub name: String,
@@ -137,6 +138,7 @@ impl Unknown {
 
 /// What something is called in a sentence: "a clock that is off".
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Noun {
     /// The words.
     pub words: String,

@@ -13,6 +13,7 @@ use crate::scalar::{Kind, Real};
 
 /// A change of a model.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Change<K: Kind> {
     /// Forces added to the friction law, and the tilt of the ground.
     pub forces: Forces<K>,
@@ -45,6 +46,7 @@ pub struct Change<K: Kind> {
 
 /// Along what the spread of the noise may rise.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Covariate {
     /// The time over this one \[s\], less a half.
     Time(f64),

@@ -15,6 +15,7 @@ use crate::seed::Rng;
 
 /// A parameter of a model.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Parameter {
     /// Its name.
     pub name: String,
@@ -26,6 +27,7 @@ pub struct Parameter {
 
 /// What an inference cost.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Cost {
     /// Evaluations of the log density.
     pub densities: u64,

@@ -64,6 +64,7 @@ pub(crate) fn whole(x: f64) -> String {
 }
 
 /// A count with thin spaces between groups of three digits.
+#[cfg(feature = "pages")]
 pub(crate) fn grouped(n: u64) -> String {
     let digits = n.to_string();
     let mut out = String::new();

@@ -10,6 +10,7 @@ pub(crate) mod digits;
 #[cfg(test)]
 pub(crate) mod fixture;
 mod json;
+#[cfg(feature = "pages")]
 mod page;
 pub mod svg;
 mod terminal;
@@ -18,13 +19,17 @@ mod words;
 
 pub use crate::predict::Bands;
 pub use json::calibration_json;
-pub use page::{figure, page, standalone};
+#[cfg(feature = "pages")]
+pub use page::page;
+#[cfg(feature = "pages")]
+pub(crate) use page::{figure, standalone};
 pub use svg::{Picture, pictures};
 pub use terminal::{picture, table};
 pub use words::in_words;
 
 /// All that is told about one calibration.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct CalibrationReport {
     /// The event's name, as its file gives it.
     pub event: String,
@@ -93,6 +98,7 @@ impl CalibrationReport {
 
 /// One unknown: its prior, its posterior and how well it was sampled.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct ParameterReport {
     /// Its name, as the model has it: `mu` or `friction.mu`.
     pub name: String,
@@ -139,6 +145,7 @@ pub struct ParameterReport {
 
 /// The terrain and where the mass of the median flow is on it.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct TrackReport {
     /// Horizontal distance of the surveyed points in m.
     pub x: Vec<f64>,
@@ -152,6 +159,7 @@ pub struct TrackReport {
 
 /// An estimate of the log evidence.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct EvidenceReport {
     /// ln p(recording | model).
     pub value: f64,
@@ -163,6 +171,7 @@ pub struct EvidenceReport {
 
 /// Checks of the fit; NaN where one is not available.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Checks {
     /// p-value of the Ljung-Box test of the innovations.
     pub ljung_box_p: f64,

@@ -58,8 +58,8 @@ fn instead(backend: &str, target: &str) -> Option<Instead> {
 /// many of a walk's.
 fn effort(backend: &str) -> Effort {
     match backend {
-        "nuts" => Effort { chains: 4, draws: 2000, warmup: 1000 },
-        _ => Effort { chains: 4, draws: 20_000, warmup: 10_000 },
+        "nuts" => Effort::new().chains(4).draws(2000).warmup(1000),
+        _ => Effort::new().chains(4).draws(20_000).warmup(10_000),
     }
 }
 

@@ -24,6 +24,7 @@ const SHADE: f64 = 0.14;
 pub(crate) struct Figure {
     /// Unique on the page.
     pub(crate) id: String,
+    #[cfg_attr(not(feature = "pages"), expect(dead_code))]
     pub(crate) caption: String,
     pub(crate) svg: String,
 }
