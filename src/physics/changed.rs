@@ -25,24 +25,58 @@ enum Border {
     Nothing,
 }
 
-/// What resists on every piece alike: mu load + constant + c u^2.
+/// The force on every piece alike, du/dt = along pull - across load -
+/// constant - c u^2. On ground tilted by delta, pull and load turn by it:
+/// along = cos(delta) + mu sin(delta), across = mu cos(delta) - sin(delta).
 #[derive(Debug, Clone, Copy)]
 struct Even<K: Kind> {
-    mu: Real<K>,
+    along: Real<K>,
+    across: Real<K>,
     constant: Real<K>,
     c: Real<K>,
 }
 
 impl<K: Kind> Even<K> {
     /// `None` where the rates have more to them.
-    fn of(rate: &Rate<K>) -> Option<Self> {
+    fn of(rate: &Rate<K>, tilt: &Tilt<K>) -> Option<Self> {
         let is_all = rate.pressed.is_constantly_zero()
             && rate.linear.is_constantly_zero();
+        let mu = rate.mu.max(0.0);
         is_all.then(|| Self {
-            mu: rate.mu.max(0.0),
+            along: tilt.cos + mu * tilt.sin,
+            across: mu * tilt.cos - tilt.sin,
             constant: rate.constant,
             c: rate.quadratic + rate.growth,
         })
+    }
+
+    /// The force but for the drag c u^2.
+    #[inline(always)]
+    fn push(&self, piece: &Piece) -> Real<K> {
+        self.along * piece.pull - self.across * piece.load - self.constant
+    }
+}
+
+/// How the ground is tilted.
+#[derive(Debug, Clone, Copy)]
+struct Tilt<K: Kind> {
+    sin: Real<K>,
+    cos: Real<K>,
+}
+
+impl<K: Kind> Tilt<K> {
+    /// Whether every piece still carries the mass: none is beyond the
+    /// vertical.
+    fn carries(&self, pieces: &[Piece]) -> bool {
+        let (sin, cos) = (self.sin.value(), self.cos.value());
+        sin == 0.0 || pieces.iter().all(|p| cos * p.load > sin * p.pull)
+    }
+
+    /// Pull and load of a piece on the tilted ground.
+    fn ground(&self, piece: &Piece) -> (Real<K>, Real<K>) {
+        let Piece { pull, load, .. } = *piece;
+        let Self { sin, cos } = *self;
+        (cos * pull + sin * load, cos * load - sin * pull)
     }
 }
 
@@ -54,8 +88,9 @@ pub(crate) struct ChangedWalker<'a, K: Kind> {
     bends: bool,
     /// The law's rates, if they are the same everywhere.
     uniform: Option<Rate<K>>,
-    /// Sine and cosine of the tilt, where there is one.
-    tilt: Option<(Real<K>, Real<K>)>,
+    tilt: Tilt<K>,
+    /// Whether every piece carries the mass in spite of it.
+    carries: bool,
     /// What the forces add until they change, unless they bend.
     added: Rate<K>,
     /// The same with the law's, if it is as simple on all pieces.
@@ -91,7 +126,7 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         let (index, _) = first_piece(path, &release)?;
         let zero = Real::new(0.0);
         let piece = &path.track.pieces()[index];
-        let tilted = !forces.tilt.is_constantly_zero();
+        let tilt = Tilt { sin: forces.tilt.sin(), cos: forces.tilt.cos() };
         let mut walker = Self {
             path: *path,
             law,
@@ -99,7 +134,8 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
             bends: law.varies() == Varies::WithSpeed || forces.bends(),
             uniform: (law.varies() == Varies::Nowhere)
                 .then(|| law.rate(&site(piece, path.depth), zero)),
-            tilt: tilted.then(|| (forces.tilt.sin(), forces.tilt.cos())),
+            tilt,
+            carries: tilt.carries(path.track.pieces()),
             added: Rate::default(),
             even: None,
             cut: None,
@@ -141,7 +177,10 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         self.added = Rate::default();
         let here = Moment { place: at, time, speed: self.pace.u };
         self.forces.add_to(&mut self.added, &here);
-        self.even = self.uniform.and_then(|law| Even::of(&(law + self.added)));
+        self.even = self
+            .uniform
+            .filter(|_| self.carries)
+            .and_then(|law| Even::of(&(law + self.added), &self.tilt));
     }
 
     /// The piece in which the next cut lies, or the last one.
@@ -185,7 +224,7 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
     /// speed otherwise is in a.
     fn balance(&self, speed: Real<K>) -> Force<K> {
         let rate = self.rate(speed);
-        let (pull, load) = ground(self.piece(), self.tilt);
+        let (pull, load) = self.tilt.ground(self.piece());
         let pressed = rate.pressed * self.piece().curvature;
         // A bend that lifts the mass off leaves it without friction.
         let carried = pressed * speed * speed + load > 0.0;
@@ -297,19 +336,16 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
     /// Crosses whole pieces until one holds `time`, or something else than
     /// its border ends the leg.
     #[inline(always)]
-    fn skim(
-        &mut self,
-        time: f64,
-        even: &Even<K>,
-        push: impl Fn(&Piece) -> Real<K>,
-    ) -> Result<(), Stop> {
+    fn skim(&mut self, time: f64, even: &Even<K>) -> Result<(), Stop> {
         let begins = self.begins + self.after;
         let (index, pace) = (self.index + 1, self.arrival);
         let entry = Entry { index, pace, begins };
         let pieces = self.path.track.pieces();
         let until = self.moment.map_or(time, |m| m.value().min(time));
         let (entry, crossing) =
-            skim(pieces, entry, self.whole, until, even.c, push);
+            skim(pieces, entry, self.whole, until, even.c, |piece| {
+                even.push(piece)
+            });
         self.index = entry.index;
         (self.pace, self.begins) = (entry.pace, entry.begins);
         let piece = &pieces[entry.index];
@@ -321,21 +357,6 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         self.arrives = Real::new(piece.start + piece.length);
         (self.arrival, self.after, self.ends) = (arrival, after, ends);
         self.end_by(self.moment)
-    }
-
-    /// The same, with the push of even or tilted ground.
-    fn skim_to(&mut self, time: f64, even: Even<K>) -> Result<(), Stop> {
-        let Even { mu, constant, .. } = even;
-        let Some(_) = self.tilt else {
-            return self.skim(time, &even, |piece| {
-                piece.pull - mu * piece.load - constant
-            });
-        };
-        let tilt = self.tilt;
-        self.skim(time, &even, |piece| {
-            let (pull, load) = ground(piece, tilt);
-            pull - mu * load.max(0.0) - constant
-        })
     }
 
     /// Ends the leg at a time, under way.
@@ -370,6 +391,7 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
 
     /// The speed at a time on the current leg; before the release, that at
     /// the release.
+    #[inline(always)]
     fn speed(&self, time: Real<K>) -> Real<K> {
         let after = time - self.begins;
         if after < 0.0 {
@@ -396,20 +418,8 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
     }
 }
 
-/// Pull and load of a piece on ground that is tilted, by sine and cosine.
-#[inline(always)]
-fn ground<K: Kind>(
-    piece: &Piece,
-    tilt: Option<(Real<K>, Real<K>)>,
-) -> (Real<K>, Real<K>) {
-    let Piece { pull, load, .. } = *piece;
-    match tilt {
-        None => (Real::new(pull), Real::new(load)),
-        Some((sin, cos)) => (cos * pull + sin * load, cos * load - sin * pull),
-    }
-}
-
 impl<K: Kind> Walker<K> for ChangedWalker<'_, K> {
+    #[inline(always)]
     fn ends(&self) -> f64 {
         self.ends
     }
@@ -431,10 +441,11 @@ impl<K: Kind> Walker<K> for ChangedWalker<'_, K> {
         self.set_off()
     }
 
+    #[inline(always)]
     fn advance_to(&mut self, time: f64) -> Result<(), Stop> {
         while self.ends <= time {
             match (self.even, self.border) {
-                (Some(even), Border::Piece) => self.skim_to(time, even)?,
+                (Some(even), Border::Piece) => self.skim(time, &even)?,
                 _ => self.advance()?,
             }
         }

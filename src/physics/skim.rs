@@ -27,8 +27,9 @@ pub(crate) struct Crossing<K: Kind> {
 }
 
 /// Crosses whole pieces with du/dt = `push` - `c` u^2 until one holds `time`:
-/// that one, and how it is crossed. Without a crossing the piece, at the
-/// latest the one numbered `last`, has to be entered in the general way.
+/// that one, and how it is crossed. Without a crossing the piece has to be
+/// entered in the general way: it is the one numbered `last`, is too long, or
+/// is not left.
 #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN ends it too")]
 #[inline(always)]
 pub(crate) fn skim<K: Kind>(

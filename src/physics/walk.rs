@@ -468,8 +468,7 @@ impl<K: Kind, L: Friction<K>> ExactWalker<'_, K, L> {
         let entry = Entry { index: self.index + 1, pace: arrival, begins };
         let last = self.pieces.len() - 1;
         let c = rate.quadratic + rate.growth;
-        let push =
-            |piece: &Piece| piece.pull - rate.mu * piece.load - rate.constant;
+        let push = |p: &Piece| p.pull - rate.mu * p.load - rate.constant;
         let (entry, crossing) = skim(self.pieces, entry, last, time, c, push);
         self.within = Real::new(0.0);
         let Some(Crossing { force, arrival, after, ends }) = crossing else {
