@@ -291,13 +291,17 @@ impl Assembled {
 
     fn change<K: Number>(&self, amounts: &[Real<K>]) -> Change<K> {
         let mut rest = amounts;
-        let mut change = Change::default();
+        let mut sum: Option<Change<K>> = None;
         for (mechanism, count) in &self.mechanisms {
             let (values, others) = rest.split_at(*count);
-            change = change.and(&K::change(mechanism.as_ref(), values));
+            let own = K::change(mechanism.as_ref(), values);
+            sum = Some(match sum {
+                Some(sum) => sum.and(&own),
+                None => own,
+            });
             rest = others;
         }
-        change
+        sum.unwrap_or_default()
     }
 
     fn law_values(&self, natural: &[f64]) -> List<Real<Plain>> {

@@ -60,13 +60,19 @@ impl<'a, P: Program> With<'a, P> {
 impl<P: Program> Program for With<'_, P> {
     fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
         let mut names = self.names.iter();
-        let mut change = Change { known: self.known, ..Change::default() };
+        let mut sum: Option<Change<K>> = None;
         for (mechanism, unknowns) in &self.mechanisms {
             let amounts = unknowns.iter().zip(&mut names);
             let amounts = amounts.map(|(of, name)| Amount::of(name, of));
             let values = run.amounts(amounts)?;
-            change = change.and(&K::change(*mechanism, &values));
+            let own = K::change(*mechanism, &values);
+            sum = Some(match sum {
+                Some(sum) => sum.and(&own),
+                None => own,
+            });
         }
+        let mut change = sum.unwrap_or_default();
+        change.known = self.known.or(change.known);
         run.under(&change, |run| self.program.run(run))
     }
 }
