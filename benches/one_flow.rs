@@ -1,14 +1,24 @@
 //! How long does one simulation take, exact and numerical?
+//!
+//! What an added force costs, `force, ..`, is printed as the ratio to the same
+//! motion without it, for plain numbers and for numbers with derivatives;
+//! `cargo bench --bench one_flow -- force` prints nothing else.
 
-#![allow(missing_docs)]
+#![allow(missing_docs, clippy::print_stdout)]
 
 mod reference;
 
+use std::hint::black_box;
+use std::time::Instant;
+
 use criterion::{Criterion, criterion_group, criterion_main};
 
-use couloir::physics::friction::{VelocityWeakening, Voellmy};
-use couloir::physics::{Friction, sample};
-use couloir::scalar::{Plain, Real};
+use couloir::physics::forces::{Axis, Range, STEPS, Shape, Stretch, Term};
+use couloir::physics::friction::{LawKind, Laws, VelocityWeakening, Voellmy};
+use couloir::physics::{
+    Forces, Friction, Rate, State, sample, sample_changed,
+};
+use couloir::scalar::{Grad, Plain, Real};
 
 fn slide(criterion: &mut Criterion, name: &str, law: &impl Friction<Plain>) {
     let event = reference::event();
@@ -37,5 +47,80 @@ fn flows(criterion: &mut Criterion) {
     slide(criterion, "flow, Dormand-Prince", &weakening);
 }
 
-criterion_group!(benches, flows);
+/// Forces as mechanisms add them; the edges are unknown, too.
+fn forces<K: LawKind>(name: &str) -> Forces<K> {
+    let number = |value, i| Real::<K>::variable(value, i);
+    let mu = Rate { mu: number(0.1, 2), ..Rate::default() };
+    let run = Range { begin: 0.0, span: 430.0 };
+    let mut term = Term::everywhere(mu);
+    match name {
+        "patch" => {
+            let edges = [number(150.3, 3), number(260.7, 4)];
+            term.over = Stretch::Between(Axis::Place, edges);
+        }
+        "surge" => {
+            let edges = [number(5.3, 3), number(9.7, 4)];
+            term.over = Stretch::Between(Axis::Time, edges);
+        }
+        "hardening" => term.shape = Shape::Linear(Axis::Place, run),
+        "weakening" => term.shape = Shape::WithSpeed(number(8.0, 3)),
+        _ => {
+            let cells = (0..40).map(|i| number(f64::from(i).sin(), 2));
+            term.shape = Shape::Cells(Axis::Place, run, cells.collect());
+        }
+    }
+    let mut forces = Forces::default();
+    forces.terms.push(term);
+    forces.step = 21.0 / STEPS;
+    forces
+}
+
+/// The seconds of some simulations, with forces or without.
+fn seconds<K: LawKind>(forces: Option<&Forces<K>>) -> f64 {
+    let event = reference::event();
+    let laws = Laws::default().parse("voellmy");
+    let Ok(laws) = laws else { return f64::NAN };
+    let values = [Real::<K>::variable(0.25, 0), Real::variable(390.0, 1)];
+    let times = event.velocity.times();
+    let (path, release) = (event.path(), event.release());
+    let mut sum = 0.0;
+    let mut visit = |s: State<K>| sum += s.speed.value();
+    let begun = Instant::now();
+    for _ in 0..200 {
+        let law = laws.with(black_box(&values));
+        let done = match black_box(forces) {
+            None => sample(&path, &law, release, times, true, &mut visit),
+            Some(forces) => {
+                let at = times.iter().map(|&t| Real::new(t));
+                sample_changed(
+                    &path, &law, forces, release, at, true, &mut visit,
+                )
+            }
+        };
+        assert!(done.is_ok());
+    }
+    black_box(sum);
+    begun.elapsed().as_secs_f64()
+}
+
+/// Prints the ratio of the shortest of interleaved runs.
+fn with_over_without<K: LawKind>(kind: &str, name: &str) {
+    let forces = forces::<K>(name);
+    let (mut with, mut without) = (f64::INFINITY, f64::INFINITY);
+    for _ in 0..40 {
+        with = with.min(seconds(Some(&forces)));
+        without = without.min(seconds::<K>(None));
+    }
+    println!("force, {name}, {kind}: {:.2} times without", with / without);
+}
+
+fn ratios(_: &mut Criterion) {
+    for name in ["patch", "surge", "hardening", "weakening", "cells"] {
+        with_over_without::<Plain>("plain", name);
+        with_over_without::<Grad<8>>("8 derivatives", name);
+        with_over_without::<Grad<16>>("16 derivatives", name);
+    }
+}
+
+criterion_group!(benches, flows, ratios);
 criterion_main!(benches);

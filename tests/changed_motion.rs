@@ -16,7 +16,8 @@ use couloir::physics::forces::{Axis, Forces, Range, Shape, Stretch, Term};
 use couloir::physics::friction::{LAWS, Laws};
 use couloir::physics::track::Piece;
 use couloir::physics::{
-    GRAVITY, Path, Rate, Release, State, Track, sample, sample_changed,
+    GRAVITY, Path, Rate, Release, State, Track, rest_changed, sample,
+    sample_changed,
 };
 use couloir::prior::AnyPrior;
 use couloir::scalar::{Grad, Kind, Plain, Real};
@@ -148,6 +149,25 @@ fn a_push_sets_a_resting_mass_moving_again() {
         })
         .collect();
     assert!(worst(&found, &expected) < 1e-9, "{found:?} {expected:?}");
+}
+
+#[test]
+fn a_force_without_an_end_lets_a_mass_come_to_rest() {
+    let track = Track::incline(10.0, 500.0).unwrap();
+    let path = Path { track: &track, depth: 1.3 };
+    let release = Release { distance: AT.0.into(), speed: 9.0.into() };
+    let law = Laws::default().parse("coulomb").unwrap();
+    let values = [Real::<Plain>::new(0.3)];
+    let rate = Rate { constant: Real::new(1.0), ..Rate::default() };
+    let edges = [2.0.into(), f64::INFINITY.into()];
+    let over = Stretch::Between(Axis::Time, edges);
+    let forces = of(rate, over, Shape::Even);
+    let law = law.with(&values);
+    let rest = rest_changed(&path, &law, &forces, release).unwrap().unwrap();
+    let angle = 10.0_f64.to_radians();
+    let slows = GRAVITY * (0.3 * angle.cos() - angle.sin());
+    let after = (9.0 - 2.0 * slows) / (slows + 1.0);
+    assert!((rest.time.value() - 2.0 - after).abs() < 1e-9);
 }
 
 #[test]

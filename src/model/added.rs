@@ -67,12 +67,16 @@ impl<'a, M: Deref<Target = dyn Mechanism + 'a>> Added<M> {
     /// The change that given values make.
     pub(super) fn change<K: Number>(&self, values: &[Real<K>]) -> Change<K> {
         let mut rest = values;
-        let mut change = Change::default();
+        let mut sum: Option<Change<K>> = None;
         for (mechanism, count) in &self.each {
             let (own, others) = rest.split_at(*count);
-            change = change.and(&K::change(&**mechanism, own));
+            let own = K::change(&**mechanism, own);
+            sum = Some(match sum {
+                Some(sum) => sum.and(&own),
+                None => own,
+            });
             rest = others;
         }
-        change
+        sum.unwrap_or_default()
     }
 }

@@ -43,7 +43,7 @@ impl<'a, P: Program> With<'a, P> {
 impl<P: Program> Program for With<'_, P> {
     fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
         let mut change = self.added.ask(run)?;
-        change.known = self.known;
+        change.known = self.known.or(change.known);
         run.under(&change, |run| self.program.run(run))
     }
 }

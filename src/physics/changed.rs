@@ -9,7 +9,8 @@
 use super::exact::{End, Force, Pace};
 use super::forces::{Axis, Forces, Moment, NEAR};
 use super::friction::{Friction, Rate, Varies};
-use super::skim::{Crossing, Entry, skim};
+use super::resistance::{Even, Resistance, Tilt};
+use super::skim::{Crossing, Entry, UNBOUNDED, skim};
 use super::track::Piece;
 use super::walk::{Path, Release, Rest, State, Walker, first_piece, site};
 use crate::error::Stop;
@@ -25,27 +26,6 @@ enum Border {
     Nothing,
 }
 
-/// What resists on every piece alike: mu load + constant + c u^2.
-#[derive(Debug, Clone, Copy)]
-struct Even<K: Kind> {
-    mu: Real<K>,
-    constant: Real<K>,
-    c: Real<K>,
-}
-
-impl<K: Kind> Even<K> {
-    /// `None` where the rates have more to them.
-    fn of(rate: &Rate<K>) -> Option<Self> {
-        let is_all = rate.pressed.is_constantly_zero()
-            && rate.linear.is_constantly_zero();
-        is_all.then(|| Self {
-            mu: rate.mu.max(0.0),
-            constant: rate.constant,
-            c: rate.quadratic + rate.growth,
-        })
-    }
-}
-
 /// The walker of a law with forces added.
 pub(crate) struct ChangedWalker<'a, K: Kind> {
     path: Path<'a>,
@@ -54,12 +34,20 @@ pub(crate) struct ChangedWalker<'a, K: Kind> {
     bends: bool,
     /// The law's rates, if they are the same everywhere.
     uniform: Option<Rate<K>>,
-    /// Sine and cosine of the tilt, where there is one.
-    tilt: Option<(Real<K>, Real<K>)>,
-    /// What the forces add until they change, unless they bend.
+    tilt: Tilt<K>,
+    /// Whether every piece carries the mass in spite of it.
+    carries: bool,
+    /// What the forces that do not vary add until they change.
     added: Rate<K>,
-    /// The same with the law's, if it is as simple on all pieces.
+    /// Whether there are others.
+    varies: bool,
+    /// The first with the law's, if that is the same on all pieces.
+    base: Option<Resistance<K>>,
+    /// The whole force, if it is as simple.
     even: Option<Even<K>>,
+    /// How far [m] and how long [s] a leg is at most, where a force varies.
+    farthest: f64,
+    longest: f64,
     /// Where [m along the slope] and when [s] the forces change next.
     cut: Option<Real<K>>,
     moment: Option<Real<K>>,
@@ -91,7 +79,7 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         let (index, _) = first_piece(path, &release)?;
         let zero = Real::new(0.0);
         let piece = &path.track.pieces()[index];
-        let tilted = !forces.tilt.is_constantly_zero();
+        let tilt = Tilt::by(forces.tilt);
         let mut walker = Self {
             path: *path,
             law,
@@ -99,9 +87,14 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
             bends: law.varies() == Varies::WithSpeed || forces.bends(),
             uniform: (law.varies() == Varies::Nowhere)
                 .then(|| law.rate(&site(piece, path.depth), zero)),
-            tilt: tilted.then(|| (forces.tilt.sin(), forces.tilt.cos())),
+            tilt,
+            carries: tilt.carries(path.track.pieces()),
             added: Rate::default(),
+            varies: forces.varying().next().is_some(),
+            base: None,
             even: None,
+            farthest: f64::INFINITY,
+            longest: f64::INFINITY,
             cut: None,
             moment: None,
             whole: 0,
@@ -135,13 +128,19 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         self.cut = next.map(|cut| cut - origin);
         self.moment = self.forces.next(Axis::Time, time);
         self.whole = self.whole_pieces();
-        if self.bends {
-            return;
-        }
+        self.farthest = self.forces.longest(Axis::Place, at);
+        self.longest = self.forces.longest(Axis::Time, time);
         self.added = Rate::default();
-        let here = Moment { place: at, time, speed: self.pace.u };
-        self.forces.add_to(&mut self.added, &here);
-        self.even = self.uniform.and_then(|law| Even::of(&(law + self.added)));
+        let speed = self.pace.u;
+        let here = Moment { place: at.into(), time: time.into(), speed };
+        self.forces.add_to(&mut self.added, &here, false);
+        let base = self
+            .uniform
+            .filter(|_| self.carries)
+            .and_then(|law| Resistance::of(&(law + self.added)));
+        self.base = base.filter(|base| self.bends || !base.is_linear());
+        let even = base.filter(|_| !self.varies);
+        self.even = even.and_then(|base| Even::of(&base, &self.tilt));
     }
 
     /// The piece in which the next cut lies, or the last one.
@@ -162,30 +161,34 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         beyond(self.cut, self.place) || beyond(self.moment, self.begins)
     }
 
-    /// The rates of law and forces at the leg's beginning with some speed.
-    fn rate(&self, speed: Real<K>) -> Rate<K> {
-        let law =
-            || self.law.rate(&site(self.piece(), self.path.depth), speed);
-        let mut rate = self.uniform.unwrap_or_else(law);
-        if self.bends {
-            let at = Moment {
-                place: self.path.track.origin() + self.place.value(),
-                time: self.begins.value(),
-                speed,
-            };
-            self.forces.add_to(&mut rate, &at);
-        } else {
-            rate = rate + self.added;
-        }
+    /// The rates of law and forces on the leg's piece.
+    fn rate(&self, at: &Moment<K>) -> Rate<K> {
+        let site = || site(self.piece(), self.path.depth);
+        let law = || self.law.rate(&site(), at.speed);
+        let mut rate = self.uniform.unwrap_or_else(law) + self.added;
+        self.forces.add_to(&mut rate, at, true);
         rate.mu = rate.mu.max(0.0);
         rate
     }
 
-    /// The forces as du/dt = a - c u^2 at a given speed; what depends on the
-    /// speed otherwise is in a.
-    fn balance(&self, speed: Real<K>) -> Force<K> {
-        let rate = self.rate(speed);
-        let (pull, load) = ground(self.piece(), self.tilt);
+    /// The forces as du/dt = a - c u^2 in a given state; where they bend,
+    /// what depends on the speed otherwise is in a.
+    #[inline(always)]
+    fn balance(&self, piece: &Piece, at: &Moment<K>) -> Force<K> {
+        let Some(base) = self.base else { return self.balance_of(at) };
+        let mut sum = base;
+        for term in self.forces.varying() {
+            sum = sum.and(term, at);
+        }
+        let (a, c) = sum.at_speed(piece, &self.tilt, at.speed);
+        Force { a, b: Real::new(0.0), c }
+    }
+
+    /// The same where the law differs from piece to piece.
+    #[inline(never)]
+    fn balance_of(&self, at: &Moment<K>) -> Force<K> {
+        let (rate, speed) = (self.rate(at), at.speed);
+        let (pull, load) = self.tilt.ground(self.piece());
         let pressed = rate.pressed * self.piece().curvature;
         // A bend that lifts the mass off leaves it without friction.
         let carried = pressed * speed * speed + load > 0.0;
@@ -199,37 +202,64 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         Force { a, b: rate.linear, c }
     }
 
-    /// The force on a leg that lasts at most until `moment` and reaches at
-    /// most `length` further.
-    fn force_until(&self, moment: f64, length: f64) -> Force<K> {
-        let first = self.balance(self.pace.u);
+    /// The force on a stretch of a piece, from a place [m along the slope]
+    /// and a time [s] on, that is left before `limit` [s].
+    #[inline(always)]
+    fn force_on(
+        &self,
+        piece: &Piece,
+        [place, length]: [Real<K>; 2],
+        pace: &Pace<K>,
+        begins: Real<K>,
+        limit: f64,
+    ) -> Force<K> {
+        let middle = place + length * 0.5 + self.path.track.origin();
+        let mut at = Moment { place: middle, time: begins, speed: pace.u };
+        let mut first = self.balance(piece, &at);
+        if self.longest.is_finite() {
+            let most = limit - begins;
+            let lasts = first.lasts_about(pace, length).unwrap_or(most);
+            at.time += lasts.min(most) * 0.5;
+            first = self.balance(piece, &at);
+        }
         if !self.bends {
             return first;
         }
-        let pace = self.pace.u.value();
-        let push = first.acceleration(self.pace.u);
-        let crossing = if pace > 0.0 { length / pace } else { f64::INFINITY };
-        let lasts = (moment - self.begins.value()).min(crossing);
-        let reached = (self.pace.u + push * lasts).max(0.0);
-        let (w0, w1) = (self.pace.w, reached.squared());
+        let push = first.acceleration(pace.u);
+        let crossing = if pace.u > 0.0 {
+            length.value() / pace.u.value()
+        } else {
+            f64::INFINITY
+        };
+        let lasts = (limit - begins.value()).min(crossing);
+        let reached = (pace.u + push * lasts).max(0.0);
+        let (w0, w1) = (pace.w, reached.squared());
         if (w1 - w0).abs() < 1e-9 {
             return first;
         }
-        let last = self.balance(reached);
+        let last = self.balance(piece, &Moment { speed: reached, ..at });
         let slope = (last.a - first.a) / (w1 - w0);
         Force { a: first.a - slope * w0, c: first.c - slope, ..first }
     }
 
-    /// When the leg ends at the latest: an added force changes, or a force
-    /// that varies with the speed has to be looked at again.
+    /// After what time \[s\] a force that varies with the speed has to be
+    /// looked at again.
+    fn step(&self) -> f64 {
+        let bent = self.bends && !self.rests;
+        if bent { self.forces.step } else { f64::INFINITY }
+    }
+
+    /// When the leg ends at the latest: an added force changes, or has to be
+    /// looked at again.
     fn latest(&self) -> Option<Real<K>> {
         let time = self.begins.value();
-        let step = time + self.forces.step;
+        let mut step = time + self.step();
+        if self.longest.is_finite() {
+            step = step.min(self.forces.stair(Axis::Time, time));
+        }
         match self.moment {
-            Some(next) if !self.bends || next <= step => Some(next),
-            _ if self.bends && !self.rests && step.is_finite() => {
-                Some(Real::new(step))
-            }
+            Some(next) if next <= step => Some(next),
+            _ if step.is_finite() => Some(Real::new(step)),
             next => next,
         }
     }
@@ -238,8 +268,15 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
     fn furthest(&self) -> (Real<K>, Border) {
         let piece = self.piece();
         let end = piece.start + piece.length;
+        let mut far = f64::INFINITY;
+        if end - self.place.value() > self.farthest {
+            let origin = self.path.track.origin();
+            let at = origin + self.place.value();
+            far = self.forces.stair(Axis::Place, at) - origin;
+        }
         match self.cut {
-            Some(cut) if cut < end => (cut, Border::Place),
+            Some(cut) if cut < end && cut <= far => (cut, Border::Place),
+            _ if far < end => (Real::new(far), Border::Place),
             _ => (Real::new(end), Border::Piece),
         }
     }
@@ -253,7 +290,9 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         let length = reach - self.place;
         let moment = self.latest();
         let limit = moment.map_or(f64::INFINITY, |m| m.value());
-        self.force = self.force_until(limit, length.value());
+        let stretch = [self.place, length];
+        let (pace, begins) = (&self.pace, self.begins);
+        self.force = self.force_on(self.piece(), stretch, pace, begins, limit);
         if self.pace.u <= 0.0 && self.force.a <= 0.0 {
             self.rests = true;
             self.wait(self.latest());
@@ -298,21 +337,53 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
     /// its border ends the leg.
     #[inline(always)]
     fn skim(
-        &mut self,
+        &self,
         time: f64,
-        even: &Even<K>,
-        push: impl Fn(&Piece) -> Real<K>,
-    ) -> Result<(), Stop> {
+        most: [f64; 2],
+        force: impl Fn(&Piece, &Pace<K>, Real<K>) -> Force<K>,
+    ) -> (Entry<K>, Option<Crossing<K>>) {
         let begins = self.begins + self.after;
         let (index, pace) = (self.index + 1, self.arrival);
         let entry = Entry { index, pace, begins };
         let pieces = self.path.track.pieces();
         let until = self.moment.map_or(time, |m| m.value().min(time));
-        let (entry, crossing) =
-            skim(pieces, entry, self.whole, until, even.c, push);
+        skim(pieces, entry, self.whole, until, most, force)
+    }
+
+    /// The same where no force varies.
+    #[inline(always)]
+    fn skim_even(&mut self, time: f64, even: &Even<K>) -> Result<(), Stop> {
+        let (even, b) = (*even, Real::new(0.0));
+        let (entry, crossing) = self.skim(time, UNBOUNDED, |piece, _, _| {
+            Force { a: even.push(piece), b, c: even.c }
+        });
+        self.enter(entry, crossing)
+    }
+
+    /// The same where some do.
+    #[inline(never)]
+    fn skim_varying(&mut self, time: f64) -> Result<(), Stop> {
+        let span = self.longest.min(self.step());
+        let moment = self.moment.map_or(f64::INFINITY, |m| m.value());
+        let force = |piece: &Piece, pace: &Pace<K>, begins: Real<K>| {
+            let stretch = [piece.start, piece.length].map(Real::new);
+            let limit = moment.min(begins.value() + span);
+            self.force_on(piece, stretch, pace, begins, limit)
+        };
+        let (entry, crossing) = self.skim(time, [self.farthest, span], force);
+        self.enter(entry, crossing)
+    }
+
+    /// Enters a piece, and crosses it if that is known.
+    #[inline(always)]
+    fn enter(
+        &mut self,
+        entry: Entry<K>,
+        crossing: Option<Crossing<K>>,
+    ) -> Result<(), Stop> {
         self.index = entry.index;
         (self.pace, self.begins) = (entry.pace, entry.begins);
-        let piece = &pieces[entry.index];
+        let piece = self.piece();
         self.place = Real::new(piece.start);
         let Some(Crossing { force, arrival, after, ends }) = crossing else {
             return self.set_off();
@@ -321,21 +392,6 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         self.arrives = Real::new(piece.start + piece.length);
         (self.arrival, self.after, self.ends) = (arrival, after, ends);
         self.end_by(self.moment)
-    }
-
-    /// The same, with the push of even or tilted ground.
-    fn skim_to(&mut self, time: f64, even: Even<K>) -> Result<(), Stop> {
-        let Even { mu, constant, .. } = even;
-        let Some(_) = self.tilt else {
-            return self.skim(time, &even, |piece| {
-                piece.pull - mu * piece.load - constant
-            });
-        };
-        let tilt = self.tilt;
-        self.skim(time, &even, |piece| {
-            let (pull, load) = ground(piece, tilt);
-            pull - mu * load.max(0.0) - constant
-        })
     }
 
     /// Ends the leg at a time, under way.
@@ -370,6 +426,7 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
 
     /// The speed at a time on the current leg; before the release, that at
     /// the release.
+    #[inline(always)]
     fn speed(&self, time: Real<K>) -> Real<K> {
         let after = time - self.begins;
         if after < 0.0 {
@@ -396,20 +453,8 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
     }
 }
 
-/// Pull and load of a piece on ground that is tilted, by sine and cosine.
-#[inline(always)]
-fn ground<K: Kind>(
-    piece: &Piece,
-    tilt: Option<(Real<K>, Real<K>)>,
-) -> (Real<K>, Real<K>) {
-    let Piece { pull, load, .. } = *piece;
-    match tilt {
-        None => (Real::new(pull), Real::new(load)),
-        Some((sin, cos)) => (cos * pull + sin * load, cos * load - sin * pull),
-    }
-}
-
 impl<K: Kind> Walker<K> for ChangedWalker<'_, K> {
+    #[inline(always)]
     fn ends(&self) -> f64 {
         self.ends
     }
@@ -431,10 +476,14 @@ impl<K: Kind> Walker<K> for ChangedWalker<'_, K> {
         self.set_off()
     }
 
+    #[inline(always)]
     fn advance_to(&mut self, time: f64) -> Result<(), Stop> {
         while self.ends <= time {
             match (self.even, self.border) {
-                (Some(even), Border::Piece) => self.skim_to(time, even)?,
+                (Some(even), Border::Piece) => self.skim_even(time, &even)?,
+                (None, Border::Piece) if self.base.is_some() => {
+                    self.skim_varying(time)?;
+                }
                 _ => self.advance()?,
             }
         }

@@ -285,6 +285,19 @@ impl<K: Kind> Force<K> {
         })
     }
 
+    /// About how long a stretch lasts, from the force at its beginning;
+    /// `None` where the mass hardly gets going or is nearly stopped on it.
+    #[inline(always)]
+    pub(crate) fn lasts_about(
+        &self,
+        pace: &Pace<K>,
+        length: Real<K>,
+    ) -> Option<Real<K>> {
+        let w = pace.w + self.acceleration(pace.u) * length * 2.0;
+        let finite = w.value() > 0.0 && w.value().is_finite();
+        finite.then(|| length * 2.0 / (pace.u + w.sqrt()))
+    }
+
     /// About how long `length` takes, from the force at its beginning.
     fn guess_time(&self, u: Real<K>, length: f64) -> f64 {
         let w = u * u;

@@ -13,6 +13,7 @@ mod changed;
 mod elementary;
 mod exact;
 mod numeric;
+mod resistance;
 mod skim;
 mod walk;
 

@@ -26,28 +26,38 @@ pub(crate) struct Crossing<K: Kind> {
     pub(crate) ends: f64,
 }
 
-/// Crosses whole pieces with du/dt = `push` - `c` u^2 until one holds `time`:
-/// that one, and how it is crossed. Without a crossing the piece, at the
-/// latest the one numbered `last`, has to be entered in the general way.
+/// No bound on how far and how long a leg is.
+pub(crate) const UNBOUNDED: [f64; 2] = [f64::INFINITY; 2];
+
+/// Crosses whole pieces, under a force without a part linear in the speed,
+/// until one holds `time`: that one, and how it is crossed. Without a crossing
+/// the piece has to be entered in the general way: it is the one numbered
+/// `last`, goes farther \[m\] or lasts longer \[s\] than allowed, or is not
+/// left.
 #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN ends it too")]
+#[expect(clippy::needless_range_loop, reason = "the index is handed back")]
 #[inline(always)]
 pub(crate) fn skim<K: Kind>(
     pieces: &[Piece],
     entry: Entry<K>,
     last: usize,
     time: f64,
-    c: Real<K>,
-    push: impl Fn(&Piece) -> Real<K>,
+    [farthest, longest]: [f64; 2],
+    force: impl Fn(&Piece, &Pace<K>, Real<K>) -> Force<K>,
 ) -> (Entry<K>, Option<Crossing<K>>) {
     let Entry { index: first, mut pace, mut begins } = entry;
-    let b = Real::new(0.0);
     for index in first..last {
         let piece = &pieces[index];
-        let force = Force { a: push(piece), b, c };
+        let force = force(piece, &pace, begins);
         let crossed = force.cross(pace, Real::new(piece.length));
         let Some((arrival, after)) = crossed else {
             return (Entry { index, pace, begins }, None);
         };
+        let far = farthest.is_finite() && piece.length > farthest;
+        let long = longest.is_finite() && !(after.value() <= longest);
+        if far || long {
+            return (Entry { index, pace, begins }, None);
+        }
         let ends = begins.value() + after.value();
         if !(ends <= time) {
             let crossing = Crossing { force, arrival, after, ends };

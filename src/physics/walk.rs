@@ -10,7 +10,7 @@ use super::exact::{End, Force, Pace};
 use super::forces::Forces;
 use super::friction::{Friction, Rate, Site, Varies};
 use super::numeric::{NumericWalker, PLAIN, WITH_DERIVATIVES};
-use super::skim::{Crossing, Entry, skim};
+use super::skim::{Crossing, Entry, UNBOUNDED, skim};
 use super::track::{Piece, Track};
 use crate::error::Stop;
 use crate::scalar::{Kind, Real};
@@ -468,9 +468,14 @@ impl<K: Kind, L: Friction<K>> ExactWalker<'_, K, L> {
         let entry = Entry { index: self.index + 1, pace: arrival, begins };
         let last = self.pieces.len() - 1;
         let c = rate.quadratic + rate.growth;
-        let push =
-            |piece: &Piece| piece.pull - rate.mu * piece.load - rate.constant;
-        let (entry, crossing) = skim(self.pieces, entry, last, time, c, push);
+        let b = Real::new(0.0);
+        let force = |piece: &Piece, _: &Pace<K>, _: Real<K>| Force {
+            a: piece.pull - rate.mu * piece.load - rate.constant,
+            b,
+            c,
+        };
+        let (entry, crossing) =
+            skim(self.pieces, entry, last, time, UNBOUNDED, force);
         self.within = Real::new(0.0);
         let Some(Crossing { force, arrival, after, ends }) = crossing else {
             return self.land(entry.index, entry.pace, entry.begins);
