@@ -188,6 +188,10 @@ impl Listener<Plain> for Heard<'_> {
         self.declared += 1;
     }
 
+    fn has_heard_enough(&self) -> bool {
+        self.listener.has_heard_enough()
+    }
+
     fn series(
         &mut self,
         series: &Series,

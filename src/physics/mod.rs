@@ -12,12 +12,14 @@ pub mod track;
 mod changed;
 mod elementary;
 mod exact;
+mod lanes;
 mod numeric;
 mod walk;
 
 pub use changed::sample_changed;
 pub use forces::Forces;
 pub use friction::{Friction, Rate, Site, Sum, Varies};
+pub use lanes::speeds;
 pub use track::Track;
 pub use walk::{Path, Release, Rest, State, rest, rest_changed, sample};
 
