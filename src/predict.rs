@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::draws::{Draws, quantile};
 use crate::error::{Error, Outcome, Result};
-use crate::model::{Collector, Listener, Model, Point, Posterior, Replicates};
+use crate::model::{Listener, Model, Point, Posterior, Replicates};
 use crate::noise::Noise;
 use crate::observe::Series;
 use crate::prior::Prior;
@@ -74,7 +74,7 @@ pub fn predictive_of_all(
         .par_iter()
         .enumerate()
         .map(|(i, row)| {
-            replicate(posterior, || Point::Natural(row), seed.child(i as u64))
+            replicate(posterior, Point::Natural(row), seed.child(i as u64))
         })
         .collect::<Result<Vec<_>>>()?;
     let of = |k: usize| -> Vec<&Pair> {
@@ -100,13 +100,8 @@ pub fn prior_predictive(
         .into_par_iter()
         .map(|i| {
             let mut rng = seed.child(i).rng();
-            let (density, found) = posterior.draw_prior(&mut rng)?;
-            if density.rejected.is_some() {
-                return Ok(None);
-            }
-            let row = found.natural;
             let all =
-                replicate(posterior, || Point::Natural(&row), seed.child(i))?;
+                replicate(posterior, Point::Prior(&mut rng), seed.child(i))?;
             Ok(all.and_then(|all| all.into_iter().next()))
         })
         .collect::<Result<Vec<_>>>()?;
@@ -115,22 +110,48 @@ pub fn prior_predictive(
 
 /// The flow at a point and one replicate of each recording; `None` where the
 /// model rejects the point.
-fn replicate<'a>(
+fn replicate(
     posterior: &Posterior<'_>,
-    point: impl Fn() -> Point<'a>,
+    point: Point<'_>,
     seed: Seed,
 ) -> Result<Option<Vec<Pair>>> {
     let model: &dyn Model = posterior.model();
-    let mut collector = Collector::default();
-    let density = model.evaluate(point(), Some(&mut collector))?;
-    if density.rejected.is_some() {
-        return Ok(None);
-    }
     let mut rng = seed.child(1).rng();
-    let mut replicates = Replicates::new(&mut rng);
-    model.evaluate(point(), Some(&mut replicates))?;
-    let flows = collector.collected.predictions.into_iter();
-    Ok(Some(flows.zip(replicates.series).collect()))
+    let mut heard =
+        Predicted { flows: Vec::new(), replicates: Replicates::new(&mut rng) };
+    let density = model.evaluate(point, Some(&mut heard))?;
+    let Predicted { flows, replicates } = heard;
+    let pairs = || flows.into_iter().zip(replicates.series).collect();
+    Ok(density.rejected.is_none().then(pairs))
+}
+
+/// Hears what a model predicts for each series, and draws a replicate of it.
+struct Predicted<'a> {
+    flows: Vec<Vec<f64>>,
+    replicates: Replicates<'a>,
+}
+
+impl Listener<Plain> for Predicted<'_> {
+    fn series(
+        &mut self,
+        series: &Series,
+        residuals: &[Real<Plain>],
+        noise: &dyn Noise<Plain>,
+    ) -> Outcome {
+        let values = series.values().iter();
+        let flow = values.zip(residuals).map(|(v, r)| v - r.value());
+        self.flows.push(flow.collect());
+        self.replicates.series(series, residuals, noise)
+    }
+
+    fn element(
+        &mut self,
+        value: f64,
+        log_density: Real<Plain>,
+        distribution: &dyn Prior<Plain>,
+    ) {
+        self.replicates.element(value, log_density, distribution);
+    }
 }
 
 fn bands(pairs: &[&Pair], times: &[f64]) -> Result<Bands> {

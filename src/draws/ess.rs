@@ -11,7 +11,7 @@
 use statrs::distribution::{Beta, ContinuousCDF, Normal};
 
 use super::rhat::{rank_normalised, split};
-use super::spectrum::{autocovariance_sum, mean, variance};
+use super::spectrum::{Autocovariances, mean, variance};
 use super::summary::{quantile, sorted};
 
 /// How many independent draws would place the bulk of the distribution as
@@ -86,11 +86,10 @@ pub(super) fn ess_below(chains: &[Vec<f64>], threshold: f64) -> f64 {
 /// Autocorrelations combine the chains, so that chains which disagree count
 /// as strongly correlated. At most n log10(n) draws are claimed for n.
 pub(super) fn effective(chains: &[impl AsRef<[f64]>]) -> f64 {
-    let n = chains.first().map_or(0, |chain| chain.as_ref().len());
-    let count = chains.len() as f64;
-    let draws = n as f64;
-    let covariances = autocovariance_sum(chains);
-    let Some(at_zero) = covariances.first() else { return f64::NAN };
+    let mut covariances = Autocovariances::new(chains);
+    let n = covariances.lags();
+    let (count, draws) = (chains.len() as f64, n as f64);
+    let at_zero = covariances.at(0);
     let means: Vec<f64> = chains.iter().map(|c| mean(c.as_ref())).collect();
     let between = if means.len() > 1 { variance(&means) } else { 0.0 };
     let pooled = at_zero / count + between;
@@ -100,7 +99,7 @@ pub(super) fn effective(chains: &[impl AsRef<[f64]>]) -> f64 {
     }
     let correlation = |lag: usize| match lag {
         0 => 1.0,
-        _ => 1.0 - (within - covariances[lag] / count) / pooled,
+        _ => 1.0 - (within - covariances.at(lag) / count) / pooled,
     };
     let total = count * draws;
     let time = geyer(correlation, n);
@@ -113,7 +112,7 @@ pub(super) fn effective(chains: &[impl AsRef<[f64]>]) -> f64 {
 /// for a reversible chain; the sum ends where they are not positive, and a
 /// pair counts no more than that before it. The even lag of the first pair
 /// left out counts once, which lowers the variance for antithetic chains.
-fn geyer(correlation: impl Fn(usize) -> f64, lags: usize) -> f64 {
+fn geyer(mut correlation: impl FnMut(usize) -> f64, lags: usize) -> f64 {
     let mut time = -1.0;
     let mut previous = f64::INFINITY;
     let mut lag = 0;

@@ -66,8 +66,8 @@ pub fn density(
     support: Support,
     points: usize,
 ) -> Option<Density> {
-    let bandwidth = bandwidth(draws)?;
     let draws = sorted(draws.to_vec());
+    let bandwidth = bandwidth_of_sorted(&draws)?;
     let least = draws.first()? - 3.0 * bandwidth;
     let greatest = draws.last()? + 3.0 * bandwidth;
     let from = support.lower.map_or(least, |bound| least.max(bound));
@@ -130,21 +130,25 @@ pub fn density_at(
 ///
 /// Nothing below two draws, for constants and for non-finite draws.
 pub fn bandwidth(draws: &[f64]) -> Option<f64> {
+    bandwidth_of_sorted(&sorted(draws.to_vec()))
+}
+
+/// The same of draws in rising order.
+fn bandwidth_of_sorted(draws: &[f64]) -> Option<f64> {
     if !draws.iter().all(|x| x.is_finite()) {
         return None;
     }
-    let draws = sorted(draws.to_vec());
     let range = draws.last()? - draws.first()?;
     let n = draws.len() as f64;
-    let sd = variance(&draws).sqrt();
-    let middle = (quantile(&draws, 0.75) - quantile(&draws, 0.25)) / 1.349;
+    let sd = variance(draws).sqrt();
+    let middle = (quantile(draws, 0.75) - quantile(draws, 0.25)) / 1.349;
     let scale = if middle > 0.0 { sd.min(middle) } else { sd };
     let silverman = 0.9 * scale * n.powf(-0.2);
     let proper = range > 0.0 && silverman > 0.0 && silverman.is_finite();
     if !proper {
         return None;
     }
-    let plugged_in = plug_in(&draws, scale).filter(|h| h.is_finite());
+    let plugged_in = plug_in(draws, scale).filter(|h| h.is_finite());
     Some(plugged_in.unwrap_or(silverman))
 }
 

@@ -201,6 +201,16 @@ impl Draws {
             .collect()
     }
 
+    /// The same as draws of their own, in one chain.
+    ///
+    /// # Errors
+    /// Where there is no draw.
+    pub fn few(&self, n: usize) -> Result<Self> {
+        let mut few = Self::new(self.names.clone(), self.units.clone())?;
+        few.push_chain(self.thinned(n).concat(), None)?;
+        Ok(few)
+    }
+
     /// The mean of each parameter over all draws.
     pub fn mean(&self) -> Vec<f64> {
         let mut sums = vec![0.0; self.dimension()];
@@ -241,18 +251,32 @@ impl Draws {
         }
         text.push('\n');
         for (chain, rows) in self.chains.iter().enumerate() {
+            // A chain often stands still: its row is then copied as text.
+            let (mut last, mut written): (&[f64], _) = (&[], 0..0);
             let rows = rows.chunks_exact(self.dimension());
             for (iteration, row) in rows.enumerate() {
                 // Writing to a string cannot fail.
                 let _ = write!(text, "{chain},{iteration}");
-                for x in row {
-                    let _ = write!(text, ",{x:?}");
+                let begin = text.len();
+                if same_bits(row, last) {
+                    text.extend_from_within(written);
+                } else {
+                    for x in row {
+                        let _ = write!(text, ",{x:?}");
+                    }
                 }
+                (last, written) = (row, begin..text.len());
                 text.push('\n');
             }
         }
         text
     }
+}
+
+/// Whether two rows are the same numbers, to the sign of a zero.
+fn same_bits(a: &[f64], b: &[f64]) -> bool {
+    let same = |(x, y): (&f64, &f64)| x.to_bits() == y.to_bits();
+    a.len() == b.len() && a.iter().zip(b).all(same)
 }
 
 /// A field of a CSV file, quoted where RFC 4180 asks for it.
@@ -329,6 +353,17 @@ mod tests {
     }
 
     #[test]
+    fn rows_that_repeat_are_written_again() {
+        let mut draws =
+            Draws::new(vec!["a".into()], vec!["1".into()]).unwrap();
+        draws.push_chain(vec![0.5, 0.5, 0.0, -0.0], None).unwrap();
+        draws.push_chain(vec![-0.0, 0.1, 0.1, 0.1], None).unwrap();
+        let expected = "chain,iteration,a\n0,0,0.5\n0,1,0.5\n0,2,0.0\n\
+                        0,3,-0.0\n1,0,-0.0\n1,1,0.1\n1,2,0.1\n1,3,0.1\n";
+        assert_eq!(draws.to_csv(), expected);
+    }
+
+    #[test]
     fn layout_is_row_major() {
         let draws = two_by_two();
         assert_eq!((draws.chains(), draws.iterations()), (2, 2));
@@ -348,6 +383,8 @@ mod tests {
         let draws = two_by_two();
         assert_eq!(draws.thinned(2), [[3.0, 1.0], [7.0, 1e-300]]);
         assert_eq!(draws.thinned(9).len(), 4);
+        assert_eq!(draws.few(2).unwrap().column(0), [[3.0, 7.0]]);
+        assert!(draws.few(0).is_err());
         assert!(draws.thinned(0).is_empty());
     }
 

@@ -1,9 +1,75 @@
-//! Autocovariances of chains, by a Fourier transform of our own.
+//! Autocovariances of chains: at short lags as sums of products, at all of
+//! them by a Fourier transform of our own.
 
 use std::f64::consts::TAU;
 
+use crate::scalar::fused;
+
 /// A complex number, real part first.
 type Complex = [f64; 2];
+
+/// Lags up to here are summed term by term, as they are asked for; a transform
+/// of as many lags as a chain has draws costs about as much as this many.
+const DIRECT: usize = 256;
+
+/// Products that are summed side by side: float sums do not commute, so it is
+/// said here what may be added in which order.
+const SIDES: usize = 32;
+
+/// The sum over chains of their autocovariances, each about the chain's own
+/// mean and with the chain's length as divisor; worked out lag by lag.
+pub(super) struct Autocovariances {
+    /// The chains less their means, of one length.
+    chains: Vec<Vec<f64>>,
+    /// The lags known so far, from 0 on.
+    known: Vec<f64>,
+}
+
+impl Autocovariances {
+    pub(super) fn new(chains: &[impl AsRef<[f64]>]) -> Self {
+        let centred = |chain: &[f64]| {
+            let mean = mean(chain);
+            chain.iter().map(|x| x - mean).collect()
+        };
+        let chains = chains.iter().map(|c| centred(c.as_ref())).collect();
+        Self { chains, known: Vec::new() }
+    }
+
+    /// The chains' length, and how many lags there are.
+    pub(super) fn lags(&self) -> usize {
+        self.chains.first().map_or(0, Vec::len)
+    }
+
+    /// The sum at a lag; NaN beyond the chains' length.
+    pub(super) fn at(&mut self, lag: usize) -> f64 {
+        while lag >= self.known.len() && lag < self.lags() {
+            if self.known.len() >= DIRECT {
+                self.known = autocovariance_sum(&self.chains);
+                break;
+            }
+            let shift = self.known.len();
+            let products = |c: &Vec<f64>| dot(c, &c[shift..]);
+            let sum: f64 = self.chains.iter().map(products).sum();
+            self.known.push(sum / self.lags() as f64);
+        }
+        self.known.get(lag).copied().unwrap_or(f64::NAN)
+    }
+}
+
+/// The sum of products, as far as the shorter one goes.
+fn dot(x: &[f64], y: &[f64]) -> f64 {
+    let (x, y) = (&x[..y.len().min(x.len())], &y[..y.len().min(x.len())]);
+    let (x_parts, y_parts) = (x.chunks_exact(SIDES), y.chunks_exact(SIDES));
+    let rest = x_parts.remainder().iter().zip(y_parts.remainder());
+    let rest: f64 = rest.map(|(a, b)| a * b).sum();
+    let mut sums = [0.0; SIDES];
+    for (a, b) in x_parts.zip(y_parts) {
+        for (i, sum) in sums.iter_mut().enumerate() {
+            *sum = fused(a[i], b[i], *sum);
+        }
+    }
+    sums.iter().sum::<f64>() + rest
+}
 
 /// The sum over chains of their autocovariances at every lag, each about the
 /// chain's own mean and with the chain's length as divisor.
@@ -133,6 +199,20 @@ mod tests {
                 assert!((x - expected).abs() < 1e-14, "{count} {n} {lag}");
             }
         }
+    }
+
+    #[test]
+    fn lag_by_lag_is_the_transform() {
+        for (count, n) in [(1, 1), (2, 37), (3, 64), (2, 700)] {
+            let chains = sample::chains(count, n, 0.7);
+            let all = autocovariance_sum(&chains);
+            let mut found = Autocovariances::new(&chains);
+            for (lag, x) in all.iter().enumerate() {
+                assert!((x - found.at(lag)).abs() < 1e-14, "{n} {lag}");
+            }
+            assert!(found.at(n).is_nan());
+        }
+        assert!(Autocovariances::new(&[[0.0; 0]]).at(0).is_nan());
     }
 
     #[test]

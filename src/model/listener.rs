@@ -33,6 +33,12 @@ pub trait Listener<K: Kind> {
     /// A block, a noise or a mechanism of this name was declared.
     fn block(&mut self, _name: &str) {}
 
+    /// Whether all was heard that was wanted: the run then ends after the
+    /// parameter just declared, as one that is rejected.
+    fn has_heard_enough(&self) -> bool {
+        false
+    }
+
     /// A series was compared: residuals are recorded minus predicted.
     ///
     /// # Errors
@@ -144,6 +150,29 @@ impl Listener<Plain> for Collector {
         _: &dyn Prior<Plain>,
     ) {
         self.collected.pointwise.push(log_density.value());
+    }
+}
+
+/// The parameters' values and places, without a look at the data.
+#[derive(Debug, Default)]
+pub(super) struct Places {
+    /// How many parameters there are.
+    pub(super) count: usize,
+    /// Their values as named.
+    pub(super) natural: Vec<f64>,
+    /// Their places on the real line.
+    pub(super) line: Vec<f64>,
+}
+
+impl Listener<Plain> for Places {
+    fn parameter(&mut self, declaration: &Declaration<'_, Plain>) {
+        let support = declaration.prior.support();
+        self.natural.push(declaration.value);
+        self.line.push(support.to_line(declaration.value));
+    }
+
+    fn has_heard_enough(&self) -> bool {
+        self.natural.len() >= self.count
     }
 }
 

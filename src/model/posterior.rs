@@ -7,7 +7,7 @@
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use super::information::Information;
-use super::listener::{Collected, Collector};
+use super::listener::{Collected, Collector, Places};
 use super::program::{Density, Model, Point, Weights};
 use super::run::SAME_PARAMETERS;
 use crate::error::{Error, Result};
@@ -188,12 +188,20 @@ impl<'m> Posterior<'m> {
         }
     }
 
-    /// The parameters' values at a place on the real line.
+    /// The parameters' values at a place on the real line. No motion is
+    /// solved for it.
     ///
     /// # Errors
     /// As [`Posterior::density`].
     pub fn natural(&self, z: &[f64]) -> Result<Vec<f64>> {
-        self.collect(Point::Line(z)).map(|(_, found)| found.natural)
+        self.places(Point::Line(z)).map(|found| found.natural)
+    }
+
+    fn places(&self, point: Point<'_>) -> Result<Places> {
+        let count = self.dimension();
+        let mut places = Places { count, ..Places::default() };
+        self.model.evaluate(point, Some(&mut places))?;
+        Ok(places)
     }
 
     /// The place on the real line of given values.
@@ -208,7 +216,7 @@ impl<'m> Posterior<'m> {
                 self.dimension()
             )));
         }
-        let (_, found) = self.collect(Point::Natural(x))?;
+        let found = self.places(Point::Natural(x))?;
         let outside = (0..x.len())
             .find(|&i| !found.line.get(i).is_some_and(|z| z.is_finite()));
         match outside {

@@ -256,6 +256,9 @@ impl<'r, K: Kind> Run<'r, K> {
                 value: x.value(),
                 prior: &prior,
             });
+            if listener.has_heard_enough() {
+                return Err(Stop::Reject("nothing more is asked of the run"));
+            }
         }
         if log_density.value() == f64::NEG_INFINITY {
             return Err(Stop::Reject("a parameter lies outside its prior"));

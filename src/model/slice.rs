@@ -196,6 +196,10 @@ impl Listener<Plain> for Heard<'_> {
         self.listener.scores()
     }
 
+    fn has_heard_enough(&self) -> bool {
+        self.listener.has_heard_enough()
+    }
+
     fn series(
         &mut self,
         series: &Series,

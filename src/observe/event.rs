@@ -12,9 +12,9 @@ use crate::mechanism::Change;
 use crate::physics::forces::STEPS;
 use crate::physics::{
     Forces, Friction, Path, Release, Rest, State, Track, rest, rest_changed,
-    sample, sample_changed,
+    sample, sample_changed, speeds,
 };
-use crate::scalar::{Kind, Real};
+use crate::scalar::{Kind, Plain, Real};
 
 /// A window \[s\] so short that a mean over it is the value itself.
 const NO_WINDOW: f64 = 1e-6;
@@ -236,6 +236,40 @@ impl Event {
             |state| flow.push(state, speed_only),
         )?;
         Ok(flow)
+    }
+
+    /// The speeds \[m/s\] at increasing times \[s\] since the release under
+    /// each of many laws: one simulation for each set of parameters, for maps
+    /// of a misfit, ensembles and tables. Eight motions are solved side by
+    /// side where the law's rates are the same along the whole track
+    /// ([`Varies::Nowhere`](crate::physics::Varies), without a linear term or
+    /// bends), the others one by one; the results are the same to round-off.
+    ///
+    /// What a model scores goes through [`Event::slide`], which sees changes
+    /// to the model.
+    ///
+    /// ```
+    /// use couloir::physics::{Track, friction::Voellmy};
+    /// use couloir::{Event, Real};
+    /// let event = Event::on(Track::incline(35.0, 500.0)?).build()?;
+    /// let law = |mu: f64| Voellmy::<Real> {
+    ///     mu: mu.into(),
+    ///     xi: 1000.0.into(),
+    /// };
+    /// let speeds = event.slide_many(&[0.2, 0.3, 0.9].map(law), &[1.0, 10.0]);
+    /// let [fast, slow, held] = &speeds[..] else { unreachable!() };
+    /// assert!(fast.as_ref().unwrap()[1] > slow.as_ref().unwrap()[1]);
+    /// assert_eq!(held.as_ref().unwrap(), &[0.0, 0.0]);
+    /// # Ok::<(), couloir::Error>(())
+    /// ```
+    ///
+    /// [`Stop::Reject`] stands where a law has no flow with its values.
+    pub fn slide_many<L: Friction<Plain>>(
+        &self,
+        laws: &[L],
+        times: &[f64],
+    ) -> Vec<Result<Vec<f64>, Stop>> {
+        speeds(&self.path(), laws, self.release(), times)
     }
 
     /// The motion under a change, as the recording's clock shows it, with

@@ -23,7 +23,7 @@ pub(crate) fn atanhc<K: Kind>(z: Real<K>) -> Real<K> {
 }
 
 /// 1/(2n+1), and n/(2n+1) one place on.
-const ATANHC: [f64; 13] = odd_reciprocals();
+pub(super) const ATANHC: [f64; 13] = odd_reciprocals();
 const ATANHC_SLOPE: [f64; 12] = derivative(&ATANHC);
 
 const fn odd_reciprocals() -> [f64; 13] {
@@ -77,7 +77,7 @@ pub(crate) fn expc<K: Kind>(x: Real<K>) -> Real<K> {
 }
 
 /// (-1)^n/(n+1)!.
-const EXPC: [f64; 11] = {
+pub(super) const EXPC: [f64; 11] = {
     let mut c = [1.0; 11];
     let mut n = 1;
     while n < c.len() {
@@ -186,8 +186,8 @@ const fn even_factorials(first: usize) -> [f64; 10] {
     }
     c
 }
-const SINHC: [f64; 10] = even_factorials(1);
-const COSH: [f64; 10] = even_factorials(0);
+pub(super) const SINHC: [f64; 10] = even_factorials(1);
+pub(super) const COSH: [f64; 10] = even_factorials(0);
 const COSHC: [f64; 10] = even_factorials(2);
 const SINHC_SLOPE: [f64; 9] = derivative(&SINHC);
 const COSHC_SLOPE: [f64; 9] = derivative(&COSHC);

@@ -49,7 +49,7 @@ pub(crate) enum End<K: Kind> {
 }
 
 /// 2 c l above which a stretch is left to [`Force::cross_far`].
-const FAR: f64 = 2.0;
+pub(super) const FAR: f64 = 2.0;
 
 impl<K: Kind> Force<K> {
     /// du/dt at speed `u`.

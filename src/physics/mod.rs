@@ -12,6 +12,7 @@ pub mod track;
 mod changed;
 mod elementary;
 mod exact;
+mod lanes;
 mod numeric;
 mod resistance;
 mod skim;
@@ -20,6 +21,7 @@ mod walk;
 pub use changed::sample_changed;
 pub use forces::Forces;
 pub use friction::{Friction, Rate, Site, Sum, Varies};
+pub use lanes::speeds;
 pub use track::Track;
 pub use walk::{Path, Release, Rest, State, rest, rest_changed, sample};
 

@@ -105,6 +105,33 @@ pub fn sample<K: Kind, L: Friction<K>>(
     }
 }
 
+/// A place on the track that the mass has reached, and when.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Standing<K: Kind> {
+    /// The piece it is on, and how far into it [m].
+    pub(super) index: usize,
+    pub(super) within: Real<K>,
+    /// The time [s] and the speed.
+    pub(super) begins: Real<K>,
+    pub(super) pace: Pace<K>,
+}
+
+/// Goes on with a motion from where it stands, under a law of the exact
+/// family, as [`sample`] with speeds only.
+///
+/// # Errors
+/// [`Stop::Reject`] where the law has no flow with these values.
+pub(super) fn sample_from<K: Kind, L: Friction<K>>(
+    path: &Path<'_>,
+    law: &L,
+    from: Standing<K>,
+    times: &[f64],
+    visit: impl FnMut(State<K>),
+) -> Result<(), Stop> {
+    let walker = ExactWalker::standing(path, law, from)?;
+    visit_times(walker, times, true, visit)
+}
+
 /// Follows the motion until the mass rests; `None` if it never does.
 ///
 /// # Errors
@@ -247,6 +274,18 @@ impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
         release: Release<K>,
     ) -> Result<Self, Stop> {
         let (index, within) = first_piece(path, &release)?;
+        let begins = Real::new(0.0);
+        let pace = Pace::new(release.speed);
+        Self::standing(path, law, Standing { index, within, begins, pace })
+    }
+
+    #[inline]
+    fn standing(
+        path: &Path<'a>,
+        law: &'a L,
+        from: Standing<K>,
+    ) -> Result<Self, Stop> {
+        let Standing { index, within, begins, pace } = from;
         let pieces = path.track.pieces();
         let zero = Real::new(0.0);
         let uniform = (law.varies() == Varies::Nowhere)
@@ -262,8 +301,8 @@ impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
             }),
             index,
             within,
-            begins: zero,
-            pace: Pace::new(release.speed),
+            begins,
+            pace,
             length: zero,
             lifted: false,
             crosses: false,
