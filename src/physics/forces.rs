@@ -3,8 +3,9 @@
 //! A term is a [`Rate`] times a shape. Its stretch and its shape may have
 //! unknown edges, so pieces of the motion are cut at places and times that
 //! carry derivatives. A shape that changes steadily is taken at the middle of
-//! each leg, which is no longer than a part of the run (`stairs`): on it the motion
-//! keeps its exact solution, and the error is of second order in its length.
+//! each leg, which is no longer than a part of the run (`stairs`): on it the
+//! motion keeps its exact solution, and the error is of second order in its
+//! length.
 
 use smallvec::SmallVec;
 
