@@ -35,7 +35,7 @@ pub fn page(report: &CalibrationReport) -> String {
 }
 
 /// A page of one file, with the style that all pages share.
-pub fn standalone(title: &str, body: &Markup) -> String {
+pub(crate) fn standalone(title: &str, body: &Markup) -> String {
     let whole = html! {
         (DOCTYPE)
         html lang="en" {
@@ -141,7 +141,7 @@ fn row(p: &ParameterReport) -> Markup {
 }
 
 /// A picture under its heading, with its caption.
-pub fn figure(picture: &Picture) -> Markup {
+pub(crate) fn figure(picture: &Picture) -> Markup {
     html! {
         h2 { (picture.title) }
         figure id=(picture.name) {
