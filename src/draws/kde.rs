@@ -89,7 +89,7 @@ pub fn density(
 ///
 /// Nothing for no draws, non-finite ones or ones outside the support, and for
 /// a bandwidth that is not positive and finite.
-pub fn density_at(
+fn density_at(
     draws: &[f64],
     support: Support,
     bandwidth: f64,

@@ -146,7 +146,7 @@ fn distance(x: &[f64], y: &[f64]) -> f64 {
 /// By the alternating series for large `t`, and by its equal under Jacobi's
 /// transformation of theta functions for small; both have converged to
 /// round-off within six terms on their side of 1.
-pub fn kolmogorov_survival(t: f64) -> f64 {
+fn kolmogorov_survival(t: f64) -> f64 {
     const TERMS: std::ops::RangeInclusive<i32> = 1..=6;
     if t.is_nan() || t <= 0.0 {
         return if t <= 0.0 { 1.0 } else { f64::NAN };

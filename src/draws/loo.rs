@@ -170,7 +170,7 @@ fn smooth_tail(logs: &mut [f64]) -> f64 {
 /// to 1 / shape exist; Zhang & Stephens have the other sign.
 ///
 /// Nothing without a spread of positive excesses.
-pub fn generalised_pareto(excess: &[f64]) -> Option<(f64, f64)> {
+fn generalised_pareto(excess: &[f64]) -> Option<(f64, f64)> {
     let n = excess.len() as f64;
     let largest = *excess.last()?;
     let quartile = excess[((n / 4.0 + 0.5) as usize).max(1) - 1];

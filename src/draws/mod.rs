@@ -41,16 +41,13 @@ mod summary;
 pub use ess::{
     ess_bulk, ess_mean, ess_quantile, ess_tail, mcse_mean, mcse_quantile,
 };
-pub use kde::{Density, Support, bandwidth, density, density_at};
+pub use kde::{Density, Support, bandwidth, density};
 pub use kolmogorov::{
-    ChainComparison, KolmogorovSmirnov, between_chains, kolmogorov_survival,
-    two_sample,
+    ChainComparison, KolmogorovSmirnov, between_chains, two_sample,
 };
 pub use lfo::{Lfo, leave_future_out};
 pub(crate) use loo::log_sum_exp;
-pub use loo::{
-    Loo, generalised_pareto, k_threshold, loo, psis, sum_and_error,
-};
+pub use loo::{Loo, k_threshold, loo, psis, sum_and_error};
 pub use residual::{
     LjungBox, ShapiroWilk, autocorrelation, ljung_box, normal_p, shapiro_wilk,
     uncorrelated_p,
