@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::adapt::Frozen;
 use super::proposal::{Base, Particle, population};
 use super::schedule::Schedule;
-use super::weights::summed;
+use super::weights::{quality, summed};
 use super::{Evidence, Inference, draws_of};
 use crate::error::Result;
 use crate::model::Posterior;
@@ -51,10 +51,11 @@ pub(super) fn estimated(
     schedule: &Schedule,
     precision: Precision,
     seed: Seed,
-) -> Result<Inference> {
+) -> Result<Estimate> {
     let count = count(frozen, schedule, precision);
     let base = Base::Mixture(frozen.mixture.clone());
     let found = population(posterior, &base, count, seed.child(0))?;
+    let does = schedule.does(quality(&found));
     let mut made = concluded(posterior, &found, seed.child(1))?;
     if let Some(evidence) = &mut made.evidence
         && frozen.excess.is_finite()
@@ -63,7 +64,15 @@ pub(super) fn estimated(
         let seen = (frozen.excess / count as f64).sqrt();
         evidence.se = evidence.se.max(seen.min(1.0));
     }
-    Ok(made)
+    Ok(Estimate { made, found, does })
+}
+
+/// What fresh draws say.
+pub(super) struct Estimate {
+    pub(super) made: Inference,
+    pub(super) found: Vec<Particle>,
+    /// Whether their weights are as good as the proposal was judged to be.
+    pub(super) does: bool,
 }
 
 /// Evidence and draws from weighted particles.

@@ -22,12 +22,12 @@ use crate::model::Posterior;
 const PEAKS: usize = 2;
 const BELOW: f64 = 2.0;
 /// A stride, in widths of the peak.
-const STRIDE: f64 = 1.5;
+const STRIDE: f64 = 1.3;
 /// How far down a profile goes, in ln.
-const DOWN: f64 = 6.0;
+const DOWN: f64 = 6.5;
 /// The most strides, and the most steps of a climb after each.
-const STRIDES: usize = 6;
-const FEW: usize = 3;
+const STRIDES: usize = 9;
+const FEW: usize = 4;
 /// How much above the normal approximation, in ln, a place becomes a
 /// component.
 const ABOVE: f64 = 0.4;

@@ -35,6 +35,9 @@ pub(crate) struct Schedule {
     /// it may fail and learn from them.
     pub(crate) judging_draws: usize,
     pub(crate) judgements: u64,
+    /// How often fresh draws are made, when the first say that a weight is
+    /// missed which those before did not.
+    pub(crate) estimates: u64,
     /// How many draws are moved on to look for places that the proposal misses.
     pub(crate) moved: usize,
     /// By these draws, the effective share below which a place was missed:
@@ -49,6 +52,12 @@ pub(crate) struct Schedule {
 }
 
 impl Schedule {
+    /// Whether fresh draws of such an effective share and tail index make an
+    /// estimate: half of what judging asks for, since they were not chosen.
+    pub(crate) fn does(&self, (share, tail): (f64, f64)) -> bool {
+        self.is_good((2.0 * share, tail.min(tail - 0.1)))
+    }
+
     /// Whether weights of such an effective share and tail index are good.
     pub(crate) fn is_good(&self, (share, tail): (f64, f64)) -> bool {
         (share > self.good_share && tail < 0.7)
@@ -63,16 +72,17 @@ impl Default for Schedule {
             climbed: 20,
             negligible: 10.0,
             components: 100,
-            learning_draws: 500,
+            learning_draws: 600,
             reweighting_rounds: 2,
             rounds: 4,
             good_share: 0.1,
             ample_share: 0.25,
             judging_draws: 2000,
-            judgements: 4,
+            judgements: 3,
+            estimates: 2,
             moved: 200,
             reached_share: 0.05,
-            error: 0.04,
+            error: 0.05,
             final_draws: (1000, 6000),
             particles: 1000,
         }

@@ -1,6 +1,6 @@
 //! Tempering from a frozen proposal, where learning alone does not do.
 
-use super::adapt::{Frozen, adapted};
+use super::adapt::{Frozen, judged};
 use super::backends::Smc;
 use super::estimate::{Precision, estimated};
 use super::proposal::{Base, Mixture};
@@ -48,13 +48,14 @@ pub(super) fn tempered(
         return Ok(led);
     };
     let mixture = fitted.beside(frozen.mixture.clone());
-    let again = adapted(posterior, mixture, schedule, seed.child(2))?;
+    let proposal = Frozen { mixture, ..frozen.clone() };
+    let again = judged(posterior, proposal, schedule, seed.child(2))?;
     let precision = Precision::Sharp;
     let sampled =
         estimated(posterior, &again, schedule, precision, seed.child(3));
     Ok(match sampled {
-        Ok(sampled) if again.good => sampled,
-        Ok(sampled) => compared(led, &sampled),
+        Ok(sampled) if again.good && sampled.does => sampled.made,
+        Ok(sampled) => compared(led, &sampled.made),
         Err(_) => led,
     })
 }

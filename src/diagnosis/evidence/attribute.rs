@@ -31,15 +31,15 @@ fn climbs(unknowns: usize) -> usize {
 }
 
 /// How many climbs of a single mechanism start from draws of the whole prior.
-const PRIOR_STARTS: usize = 2;
+const PRIOR_STARTS: usize = 4;
 
 /// What is so far below the best, in ln, is estimated roughly: it has less
 /// than a hundred-thousandth of the probability.
-const IRRELEVANT: f64 = 12.0;
+const IRRELEVANT: f64 = 11.0;
 
 /// How much higher, in ln, an evidence may come to be whose proposal has poor
 /// weights yet.
-const OPEN: f64 = 6.0;
+const OPEN: f64 = 3.0;
 
 /// Fits the model as it is, and with each mechanism; sharply where it matters.
 ///
@@ -179,7 +179,7 @@ pub(crate) fn extend<P: Program>(
 }
 
 /// How far, in ln, what a search promises may fall short of an evidence.
-const SHORT: f64 = 3.0;
+const SHORT: f64 = 1.0;
 
 /// Fits mechanisms only where they promise an evidence of about the hurdle:
 /// most combinations are far below it.

@@ -11,8 +11,8 @@
 //! learn is *tempered* (`temper.rs`).
 
 use crate::error::{Error, Result};
-use crate::infer::adapt::{Frozen, adapted, judged};
-use crate::infer::estimate::{Precision, estimated};
+use crate::infer::adapt::{Frozen, adapted, judged, taught};
+use crate::infer::estimate::{Estimate, Precision, estimated};
 use crate::infer::proposal::{Component, Mixture};
 use crate::infer::schedule::Schedule;
 use crate::infer::search::{SearchSpace, components, outlook};
@@ -90,16 +90,32 @@ impl LaplaceMixture {
     ) -> Result<Inference> {
         progress.begin("importance sampling", None);
         let schedule = &self.schedule;
-        if precision == Precision::Rough {
-            return estimated(posterior, frozen, schedule, precision, seed);
+        let mut frozen = frozen.clone();
+        for time in 0..schedule.estimates {
+            let seed = seed.child(time);
+            if precision == Precision::Sharp {
+                frozen = judged(posterior, frozen, schedule, seed.child(0))?;
+                if !frozen.good {
+                    break;
+                }
+            }
+            let seed_of = |i: u64| seed.child(1).child(i);
+            let Estimate { made, found, does } = estimated(
+                posterior,
+                &frozen,
+                schedule,
+                precision,
+                seed_of(0),
+            )?;
+            if does || precision == Precision::Rough {
+                return Ok(made);
+            }
+            let late = schedule.reweighting_rounds + 1;
+            let mixture = &frozen.mixture;
+            frozen.mixture =
+                taught(mixture, &found, late, schedule, seed_of(1));
         }
-        let first = frozen.clone();
-        let judged = judged(posterior, first, schedule, seed.child(0))?;
-        let seed = seed.child(1);
-        if judged.good {
-            return estimated(posterior, &judged, schedule, precision, seed);
-        }
-        tempered(posterior, &judged, schedule, seed, progress)
+        tempered(posterior, &frozen, schedule, seed.child(100), progress)
     }
 
     /// About the log evidence, from the normal approximations of the peaks

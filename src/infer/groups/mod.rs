@@ -180,7 +180,11 @@ impl LaplaceMixture {
         let joint = adapted(&whole, proposal, &schedule, seed.child(2))?;
         if joint.good {
             let (whole, sharp) = (grouped.whole, Precision::Sharp);
-            return estimated(whole, &joint, &schedule, sharp, seed.child(3));
+            let seed = seed.child(3);
+            let found = estimated(whole, &joint, &schedule, sharp, seed)?;
+            if found.does {
+                return Ok(found.made);
+            }
         }
         self.nested(grouped, common, &parts, seed.child(1), progress)
     }

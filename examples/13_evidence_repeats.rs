@@ -1,0 +1,99 @@
+//! How well evidences repeat, and whether stated errors hold: every candidate
+//! of an event weighed with several seeds. Arguments: how many seeds, values a
+//! second, and event folders; without any, two seeds of the built-in event.
+use std::path::Path;
+use std::time::Instant;
+
+use couloir::diagnosis::attribute;
+use couloir::io;
+use couloir::mechanism::catalogue::catalogue;
+use couloir::model::{Assembled, declared_blocks};
+use couloir::prelude::*;
+
+/// Candidates further below the best, in ln, are not looked at.
+const FAR: f64 = 10.0;
+
+/// An event's model, of so many values a second.
+fn model(file: io::EventFile, rate: f64) -> Result<Assembled> {
+    let series = file.event.recordings().next();
+    let series = series.ok_or_else(|| Error::input("no recording"))?;
+    let times = series.times();
+    let step = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
+    let every = (1.0 / (rate * step)).round().max(1.0) as usize;
+    let of = |all: &[f64]| -> Vec<f64> {
+        all.iter().skip(every - 1).step_by(every).copied().collect()
+    };
+    let quantity = series.quantity();
+    let thin = Series::new(quantity, of(times), of(series.values()))?;
+    let event = file.event.with_recording(thin)?;
+    Assembled::new(event, file.friction, file.noise, &file.priors)
+}
+
+fn mean(x: &[f64]) -> f64 {
+    x.iter().sum::<f64>() / x.len() as f64
+}
+
+/// ln evidence, its stated error, and how far each seed is off, by candidate.
+fn study(name: &str, model: &Assembled, seeds: u64) -> Result<()> {
+    let blocks = declared_blocks(model)?;
+    let all = catalogue(&model.event().extent(), &blocks);
+    let begun = Instant::now();
+    let found = (1..=seeds)
+        .map(|seed| attribute(model, &all, Seed::new(seed), &Quiet))
+        .collect::<Result<Vec<_>>>()?;
+    let seconds = begun.elapsed().as_secs_f64() / seeds as f64;
+    let logs = |i: usize| -> Vec<f64> {
+        found.iter().map(|f| f.candidates[i].log_evidence).collect()
+    };
+    let best = (0..all.len()).map(|i| mean(&logs(i)));
+    let best = best.fold(f64::NEG_INFINITY, f64::max);
+    println!("\n{name}, {seconds:.2} s a seed");
+    println!("| candidate | ln evidence | most off | sd | stated |");
+    println!("|---|---|---|---|---|");
+    let mut scores = Vec::new();
+    for (i, mechanism) in all.iter().enumerate() {
+        let logs = logs(i);
+        let middle = mean(&logs);
+        if middle < best - FAR {
+            continue;
+        }
+        let errors: Vec<f64> =
+            found.iter().map(|f| f.candidates[i].se).collect();
+        let off = logs.iter().map(|log| log - middle);
+        let most = off.clone().map(f64::abs).fold(0.0, f64::max);
+        let spread = off.clone().map(|x| x * x).sum::<f64>();
+        let sd = (spread / (logs.len() as f64 - 1.0)).sqrt();
+        let stated = mean(&errors);
+        let label = mechanism.label();
+        println!(
+            "| {label} | {middle:.2} | {most:.2} | {sd:.3} | {stated:.3} |"
+        );
+        // The mean of n takes a degree of freedom away.
+        let n = logs.len() as f64;
+        let scale = (n / (n - 1.0)).sqrt();
+        scores.extend(off.zip(&errors).map(|(x, se)| scale * x / se));
+    }
+    let square = scores.iter().map(|z| z * z).sum::<f64>();
+    let sd = (square / scores.len() as f64).sqrt();
+    println!("z-scores of {}: sd {sd:.2}", scores.len());
+    Ok(())
+}
+
+fn main() -> Result<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let number = |i: usize, default: f64| {
+        arguments.get(i).and_then(|x| x.parse().ok()).unwrap_or(default)
+    };
+    let (seeds, rate) = (number(0, 2.0).max(2.0) as u64, number(1, 1e9));
+    let laws = Laws::default();
+    if arguments.len() < 3 {
+        let file = io::coastdown(&laws)?;
+        return study("coast-down", &model(file, rate)?, seeds);
+    }
+    for folder in &arguments[2..] {
+        let file = io::load(Path::new(folder), &laws)?;
+        let name = file.event.name().to_owned();
+        study(&name, &model(file, rate)?, seeds)?;
+    }
+    Ok(())
+}
