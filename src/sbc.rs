@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::error::{Error, Result};
-use crate::infer::{Backend, Progress, Quiet, infer};
+use crate::infer::{Backend, Progress, Quiet};
 use crate::model::{Model, Point, Posterior};
 use crate::observe::Series;
 use crate::predict::simulate;
@@ -108,7 +108,8 @@ fn replication(
     let seen = simulate(prior.model(), &truth, seed.child(1))?;
     let model = fitted(&seen)?;
     let posterior = Posterior::new(model.as_ref())?;
-    let found = infer(backend, &posterior, seed.child(2), &Quiet)?;
+    // Ranks say what the warnings of thousands of short chains would.
+    let found = backend.explore(&posterior, seed.child(2), &Quiet)?;
     let draws = found.draws.ok_or_else(|| {
         Error::input(format!("backend {} yields no draws", backend.name()))
     })?;

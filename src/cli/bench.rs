@@ -99,7 +99,11 @@ impl Arguments {
 }
 
 fn row(name: &'static str, found: Inference) -> Row {
-    let summaries = found.draws.as_ref().map(summarise);
+    let summaries = match &found.draws {
+        Some(draws) if found.summaries.is_empty() => Some(summarise(draws)),
+        Some(_) => Some(found.summaries.clone()),
+        None => None,
+    };
     let least = |f: fn(&crate::draws::Summary) -> f64| {
         summaries.as_ref().map(|s| s.iter().map(f).fold(f64::NAN, f64::min))
     };

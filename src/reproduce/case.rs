@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::experiment::{PRINTED, Priors, WIDE, Which, model};
 use crate::calibrate::calibrate;
-use crate::draws::{Draws, density, quantile, summarise};
+use crate::draws::{Draws, density, quantile};
 use crate::error::{Error, Result};
 use crate::infer::{Effort, MetropolisHastings, Quiet, infer};
 use crate::model::{Assembled, Posterior};
@@ -155,7 +155,7 @@ pub(super) fn sensitivity(
             let draws = found
                 .draws
                 .ok_or_else(|| Error::inference("the walk left no draws"))?;
-            let summaries = summarise(&draws);
+            let summaries = found.summaries;
             Ok(Sensitivity {
                 set,
                 which,

@@ -6,8 +6,8 @@ use super::experiment::{Priors, TRUTH, Which, model, plan, series};
 use crate::draws::{Draws, summarise};
 use crate::error::{Error, Result};
 use crate::infer::{
-    Bridge, Effort, Inference, Map, Marginal, MetropolisHastings, Progress,
-    Quadrature, Quiet, infer,
+    Backend, Bridge, Effort, Inference, Map, Marginal, MetropolisHastings,
+    Progress, Quadrature, Quiet, infer,
 };
 use crate::model::Posterior;
 use crate::observe::{Event, Series};
@@ -88,7 +88,7 @@ fn explored(
     seed: Seed,
 ) -> Result<(Draws, Inference)> {
     let walk = MetropolisHastings::random_walk(effort);
-    let found = infer(&walk, posterior, seed, &Quiet)?;
+    let found = walk.explore(posterior, seed, &Quiet)?;
     let draws = found
         .draws
         .ok_or_else(|| Error::inference("the walk left no draws"))?;
