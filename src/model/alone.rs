@@ -9,14 +9,14 @@ use crate::mechanism::Unknown;
 
 /// A program for one of its events alone; itself a program.
 #[derive(Debug)]
-pub struct Alone<'a, P> {
+pub(crate) struct Alone<'a, P> {
     program: &'a P,
     event: usize,
 }
 
 impl<'a, P: Program> Alone<'a, P> {
     /// The program for its `event`-th event.
-    pub fn new(program: &'a P, event: usize) -> Self {
+    pub(crate) fn new(program: &'a P, event: usize) -> Self {
         Self { program, event }
     }
 }
@@ -30,7 +30,7 @@ impl<P: Program> Program for Alone<'_, P> {
 /// The parameters that all events of a program have in common, those of
 /// mechanisms first, under their priors; a program without data.
 #[derive(Debug)]
-pub struct Common<'a, P> {
+pub(crate) struct Common<'a, P> {
     program: &'a P,
     added: Vec<Unknown>,
 }
@@ -38,7 +38,7 @@ pub struct Common<'a, P> {
 impl<'a, P: Program> Common<'a, P> {
     /// What a program's events have in common, with what mechanisms add to
     /// it, by name.
-    pub fn new(program: &'a P, added: Vec<Unknown>) -> Self {
+    pub(crate) fn new(program: &'a P, added: Vec<Unknown>) -> Self {
         Self { program, added }
     }
 
@@ -46,7 +46,7 @@ impl<'a, P: Program> Common<'a, P> {
     ///
     /// # Errors
     /// A model that fails.
-    pub fn dimension(&self) -> Result<usize> {
+    pub(crate) fn dimension(&self) -> Result<usize> {
         let mut collector = Collector::default();
         self.evaluate(Point::Middle, Some(&mut collector))?;
         Ok(collector.collected.names.len())

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use super::look::Process;
 use super::{CELLS, NOUN, SAYS};
 use crate::block::List;
-use crate::diagnosis::findings::UNKNOWN;
+use crate::diagnosis::hypothesis::UNKNOWN;
 use crate::error::{Error, Result};
 use crate::mechanism::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::observe::Extent;

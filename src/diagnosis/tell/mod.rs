@@ -1,5 +1,6 @@
 //! A diagnosis as words, tables, pictures, a page, and a model to paste.
 
+mod json;
 pub(crate) mod page;
 pub(crate) mod paste;
 pub(crate) mod phrases;
