@@ -36,7 +36,7 @@ pub(crate) fn mismatch(
                     from: reach.from,
                     to: reach.to.min(end).max(reach.from),
                 };
-                courses.mismatch(force, stretch, Vec::new())
+                courses.mismatch(force, stretch, &[])
             })
             .collect();
     }
@@ -47,7 +47,9 @@ pub(crate) fn mismatch(
     }
     joined(&runs)
         .into_iter()
-        .filter_map(|(stretch, parts)| courses.mismatch(force, stretch, parts))
+        .filter_map(|(stretch, parts)| {
+            courses.mismatch(force, stretch, &parts)
+        })
         .collect()
 }
 
@@ -87,7 +89,7 @@ impl<'a> Courses<'a> {
         &self,
         force: &FreeForce,
         stretch: Stretch,
-        parts: Vec<Stretch>,
+        parts: &[Stretch],
     ) -> Option<Mismatch> {
         let covered = |course: &Course| {
             let [first, last] = course.ends(force.axis);
@@ -141,7 +143,7 @@ impl<'a> Course<'a> {
         &self,
         force: &FreeForce,
         stretch: Stretch,
-        parts: Vec<Stretch>,
+        parts: &[Stretch],
     ) -> Mismatch {
         let (times, places) = match force.axis {
             Axis::Time => {
