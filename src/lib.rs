@@ -40,7 +40,7 @@
 //! Another law is another word in that line (`Coulomb { mu: .. }`), or a sum
 //! (`Coulomb { .. } + Turbulent { .. }`); correlated errors are
 //! `Ar { phi: [Uniform(-1.0, 1.0)], sigma2: .. }`. The whole grammar is told
-//! at [`model!`], and `examples/` walks through it in nine steps.
+//! at [`model!`], and `examples/` walks through it in twelve steps.
 //!
 //! # The nouns
 //!
@@ -67,7 +67,7 @@
 //! | [`error`], [`seed`], [`scalar`], [`block`] | failure, chance, numbers with derivatives, named parts |
 //! | [`prior`], [`draws`], [`context`], [`physics`] | distributions; samples and their diagnostics; buffers; terrain, laws, motion |
 //! | [`noise`] | how recordings scatter |
-//! | [`change`] | what a change from outside makes of a model; mechanisms |
+//! | [`mechanism`] | what a model may lack: changes from outside, and their catalogue |
 //! | [`declared`] | blocks as a model declared them |
 //! | [`observe`] | events, series, and from the motion to what was measured |
 //! | [`mod@model`] | one run of a model, asked in different ways |

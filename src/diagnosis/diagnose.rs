@@ -1,18 +1,21 @@
-//! The whole diagnosis: check, locate, attribute, model, show.
+//! The whole diagnosis: weigh, locate, decide, compare, tell.
 
 use std::time::Instant;
 
-use crate::diagnosis::compare::before_and_after::{
-    Shown, improvement, pictured, show,
+use crate::diagnosis::compare::baseline::baseline;
+use crate::diagnosis::compare::checks::{
+    FittedModel, checks, improvement, pictured,
 };
-use crate::diagnosis::compare::check::baseline;
 use crate::diagnosis::decide::choose::{Choice, Chosen};
 use crate::diagnosis::decide::judge::{
-    Beforehand, check_odds, group, judge, separating, told, verdict,
+    Beforehand, check_odds, group, judge, separating, verdict,
 };
-use crate::diagnosis::evidence::attribute::attribute;
+use crate::diagnosis::evidence::attribute::{Attribution, attribute};
 use crate::diagnosis::evidence::fit::Fit;
-use crate::diagnosis::findings::{Diagnosis, NONE, UNKNOWN, Verdict};
+use crate::diagnosis::findings::{
+    Diagnosis, Judged, ParameterSummary, Verdict,
+};
+use crate::diagnosis::hypothesis::{NONE, UNKNOWN};
 use crate::diagnosis::locate::{FreeForce, free_fit, locate_all};
 use crate::diagnosis::options::Options;
 use crate::diagnosis::tell::paste::corrected;
@@ -76,6 +79,15 @@ struct Subject<'a, P> {
     all: Vec<Box<dyn Mechanism>>,
 }
 
+/// What was decided from the evidence.
+struct Decision {
+    /// Everything that was weighed, most probable first.
+    judged: Vec<Judged>,
+    verdict: Verdict,
+    /// What is added to the model.
+    chosen: Option<Chosen>,
+}
+
 impl<P: Program> Subject<'_, P> {
     fn diagnose(
         &self,
@@ -90,26 +102,14 @@ impl<P: Program> Subject<'_, P> {
         progress.begin("locating the mismatch", None);
         let forces =
             locate_all(program, &self.extent, &found.none, seed.child(10))?;
-        let mut judged = judge(&found, all, &forces, &options.odds);
-        let verdict = verdict(&judged);
         progress.begin("weighing pairs", None);
-        let choice = Choice {
-            program,
-            all,
-            found: &found,
-            judged: &judged,
-            beforehand: Beforehand::of(&judged, &options.odds),
-            seed,
-        };
-        let chosen = choice.choose(verdict)?;
-        let (verdict, chosen) = choice.explained(verdict, chosen);
-        if let Some(chosen) = &chosen {
-            chosen.call(&mut judged, all);
-        }
+        let Decision { judged, verdict, chosen } =
+            self.decide(&found, &forces, options, seed)?;
         progress.begin("showing", None);
         let free = self.free_form(verdict, &forces, &found.none)?;
-        let after = shown_after(chosen.as_ref(), free.as_ref(), all, seed);
-        let told = self.told(&found.none, after.as_ref(), options, seed)?;
+        let after = corrected_model(chosen.as_ref(), free.as_ref(), all, seed);
+        let compared =
+            self.compared(&found.none, after.as_ref(), options, seed)?;
         let group = group(&judged);
         let rivals = chosen.as_ref().map(|c| c.rivals(all, &found.none));
         let mut diagnosis = Diagnosis {
@@ -118,12 +118,34 @@ impl<P: Program> Subject<'_, P> {
             separating: separating(&group, &judged),
             group,
             mechanisms: judged,
-            ..told
+            ..compared
         };
         self.write_out(&mut diagnosis, chosen.as_ref(), &forces, options);
         diagnosis.forces = forces;
         diagnosis.seconds = begun.elapsed().as_secs_f64();
         Ok(diagnosis)
+    }
+
+    /// From evidences to probabilities, a verdict, and what is added.
+    fn decide(
+        &self,
+        found: &Attribution,
+        forces: &[FreeForce],
+        options: &Options,
+        seed: Seed,
+    ) -> Result<Decision> {
+        let (program, all) = (self.program, &self.all[..]);
+        let mut judged = judge(found, all, forces, &options.odds);
+        let verdict = verdict(&judged);
+        let beforehand = Beforehand::of(&judged, &options.odds);
+        let choice =
+            Choice { program, all, found, judged: &judged, beforehand, seed };
+        let chosen = choice.choose(verdict)?;
+        let (verdict, chosen) = choice.explained(verdict, chosen);
+        if let Some(chosen) = &chosen {
+            chosen.call(&mut judged, all);
+        }
+        Ok(Decision { judged, verdict, chosen })
     }
 
     /// Where the mismatch is, and what the corrected model is.
@@ -161,22 +183,22 @@ impl<P: Program> Subject<'_, P> {
     }
 
     /// Before, after, and what both predict.
-    fn told(
+    fn compared(
         &self,
         none: &Fit,
-        after: Option<&Shown<'_>>,
+        after: Option<&FittedModel<'_>>,
         options: &Options,
         seed: Seed,
     ) -> Result<Diagnosis> {
-        let before = Shown {
+        let before = FittedModel {
             mechanisms: Vec::new(),
             fit: none,
             first: seed.child(30),
             rough: false,
         };
-        let old = show(self.program, &self.events, &before)?;
+        let old = checks(self.program, &self.events, &before)?;
         let new = match after {
-            Some(after) => show(self.program, &self.events, after)?,
+            Some(after) => checks(self.program, &self.events, after)?,
             None => old.clone(),
         };
         let fit = after.map_or(none, |after| after.fit);
@@ -188,10 +210,11 @@ impl<P: Program> Subject<'_, P> {
         Ok(Diagnosis {
             event: names.join(" + "),
             baseline: baseline(none, &old, self.events[0], options),
-            selected: after.map(Shown::names).unwrap_or_default(),
+            selected: after.map(FittedModel::names).unwrap_or_default(),
             improvement: improvement(none, fit, &old, &new),
-            parameters: told(&summarise(&fit.draws), None)
-                .into_iter()
+            parameters: summarise(&fit.draws)
+                .iter()
+                .map(ParameterSummary::of)
                 .filter(|p| p.within(UNKNOWN).is_none())
                 .collect(),
             pictured: pictured(&self.events, &old, &new, after.is_some()),
@@ -203,18 +226,18 @@ impl<P: Program> Subject<'_, P> {
 }
 
 /// What the corrected model is, to be shown.
-fn shown_after<'a>(
+fn corrected_model<'a>(
     chosen: Option<&'a Chosen>,
     free: Option<&'a (Box<dyn Mechanism>, Fit)>,
     all: &'a [Box<dyn Mechanism>],
     seed: Seed,
-) -> Option<Shown<'a>> {
+) -> Option<FittedModel<'a>> {
     let (mechanisms, fit, rough) = match (chosen, free) {
         (Some(chosen), _) => (chosen.mechanisms(all), &chosen.fit, false),
         (None, Some((force, fit))) => (vec![force.as_ref()], fit, true),
         (None, None) => return None,
     };
-    Some(Shown { mechanisms, fit, first: seed.child(40), rough })
+    Some(FittedModel { mechanisms, fit, first: seed.child(40), rough })
 }
 
 /// The free-form force along the axis with the most evidence.

@@ -1,12 +1,9 @@
-//! What a diagnosis found, as plain data; and as `diagnosis.json`.
+//! What a diagnosis found, as plain data.
 
-use std::f64::consts::LN_10;
-
-use serde_json::{Map, Value, json};
-
+use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::locate::FreeForce;
-use crate::draws::Draws;
-use crate::mechanism::{Family, Noun};
+use crate::draws::{Draws, Summary};
+use crate::mechanism::Noun;
 use crate::physics::forces::Axis;
 use crate::predict::Bands;
 
@@ -36,7 +33,7 @@ pub struct Diagnosis {
     /// The recording that would tell the group apart, in a sentence.
     pub separating: Option<String>,
     /// The corrected model's parameters, the mechanisms' first.
-    pub parameters: Vec<Told>,
+    pub parameters: Vec<ParameterSummary>,
     /// The corrected model, written out.
     pub corrected: Corrected,
     /// Its posterior draws; those of the model as it was where nothing is
@@ -110,34 +107,6 @@ impl Verdict {
     }
 }
 
-/// What sort of explanation of a recording something is.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Hypothesis {
-    /// The model as it was: nothing is missing.
-    #[default]
-    Baseline,
-    /// A mechanism of this family is missing.
-    Mechanism(Family),
-    /// A force is missing that no mechanism describes.
-    Unknown,
-}
-
-impl Hypothesis {
-    /// Its kind in `diagnosis.json`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Baseline => NONE,
-            Self::Mechanism(family) => family.name(),
-            Self::Unknown => UNKNOWN,
-        }
-    }
-}
-
-/// The name of the model as it was among the mechanisms.
-pub(crate) const NONE: &str = "none";
-/// The name of the free-form force among the mechanisms.
-pub(crate) const UNKNOWN: &str = "unknown";
-
 /// A stretch in which simulation and recording differ.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
@@ -170,10 +139,10 @@ pub struct Mismatch {
     pub parts: Vec<(f64, f64, f64)>,
 }
 
-/// A parameter in figures.
+/// The posterior of a parameter, summarised.
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
-pub struct Told {
+pub struct ParameterSummary {
     /// Its name.
     pub name: String,
     /// Its unit.
@@ -190,7 +159,26 @@ pub struct Told {
     pub q95: f64,
 }
 
-impl Told {
+impl ParameterSummary {
+    /// That of a column of draws.
+    pub(crate) fn of(column: &Summary) -> Self {
+        Self {
+            name: column.name.clone(),
+            unit: column.unit.clone(),
+            mean: column.mean,
+            sd: column.sd,
+            q05: column.q05,
+            q50: column.q50,
+            q95: column.q95,
+        }
+    }
+
+    /// The same under its own name, where it is of a mechanism of this name.
+    pub(crate) fn named_within(self, mechanism: &str) -> Self {
+        let name = self.within(mechanism).unwrap_or(&self.name).to_owned();
+        Self { name, ..self }
+    }
+
     /// Its own name, where it is a parameter of a mechanism of this name.
     pub(crate) fn within(&self, mechanism: &str) -> Option<&str> {
         self.name.strip_prefix(mechanism)?.strip_prefix('.')
@@ -222,7 +210,7 @@ pub struct Judged {
     /// In which form.
     pub form: Option<&'static str>,
     /// The best variant's parameters.
-    pub parameters: Vec<Told>,
+    pub parameters: Vec<ParameterSummary>,
     /// ln of the evidence of each variant, by its label.
     pub variants: Vec<(String, f64)>,
 }
@@ -237,34 +225,34 @@ pub struct Rival {
     pub log10_bayes_factor: f64,
 }
 
-/// Before and after.
+/// What the corrected model brings, against the model as it was.
 #[derive(Debug, Clone, Copy, Default)]
 #[non_exhaustive]
 pub struct Improvement {
     /// Of the corrected model against the one before.
     pub log10_bayes_factor: f64,
     /// Of the posterior mean prediction, in the recording's unit.
-    pub rmse: Pair,
+    pub rmse: BeforeAfter,
     /// The least error that the motion reaches, whatever priors and noise
     /// say; NaN where it was not searched.
-    pub least_squares: Pair,
+    pub least_squares: BeforeAfter,
     /// The standard deviation of the first recording's errors, where each
     /// depends on those before it; NaN where none does.
-    pub stationary_sd: Pair,
+    pub stationary_sd: BeforeAfter,
     /// Expected log predictive density by PSIS-LOO.
-    pub elpd: Pair,
+    pub elpd: BeforeAfter,
     /// Of the last 30 %, predicted from the first 70 %.
-    pub heldout_rmse: Pair,
+    pub heldout_rmse: BeforeAfter,
     /// The share of values in the 90 % predictive band.
-    pub coverage90: Pair,
+    pub coverage90: BeforeAfter,
     /// p of no autocorrelation among the innovations.
-    pub ljung_box_p: Pair,
+    pub ljung_box_p: BeforeAfter,
 }
 
-/// A figure before and after.
+/// A figure of both models.
 #[derive(Debug, Clone, Copy, Default)]
 #[non_exhaustive]
-pub struct Pair {
+pub struct BeforeAfter {
     /// Of the model as it was.
     pub before: f64,
     /// Of the corrected one.
@@ -308,136 +296,4 @@ pub struct Pictured {
     /// The part of the track that the mismatch covers, in the same
     /// coordinates: x, z of points along it.
     pub marked: Vec<(f64, f64)>,
-}
-
-fn axis_name(axis: Axis) -> &'static str {
-    match axis {
-        Axis::Place => "arclength",
-        Axis::Time => "time",
-        Axis::Speed => "speed",
-    }
-}
-
-fn parameters_json(parameters: &[Told]) -> Value {
-    let entry = |p: &Told| {
-        let value = json!({
-            "mean": p.mean, "sd": p.sd, "q05": p.q05, "q50": p.q50,
-            "q95": p.q95, "unit": p.unit,
-        });
-        (p.name.clone(), value)
-    };
-    Value::Object(parameters.iter().map(entry).collect())
-}
-
-fn mismatch_json(m: &Mismatch) -> Value {
-    let unit = if m.axis == Axis::Time { "s" } else { "m" };
-    let mut value = json!({
-        "coordinate": axis_name(m.axis), "from": m.from, "to": m.to,
-        "unit": unit, "time_from": m.time_from, "time_to": m.time_to,
-        "place_from": m.place_from, "place_to": m.place_to,
-        "specific_force": m.specific_force,
-        "specific_force_q05": m.specific_force_q05,
-        "specific_force_q95": m.specific_force_q95,
-        "delta_mu": m.delta_mu, "probability": m.probability,
-    });
-    if m.parts.len() > 1 {
-        let parts = m.parts.iter().map(|(from, to, force)| {
-            json!({"from": from, "to": to, "specific_force": force})
-        });
-        value["parts"] = parts.collect();
-    }
-    value
-}
-
-fn judged_json(m: &Judged) -> Value {
-    let mut value = json!({
-        "name": m.name, "kind": m.kind.name(), "probability": m.probability,
-        "log_evidence": m.log_evidence, "log_evidence_se": m.se,
-        "log10_bayes_factor": m.log10_bayes_factor, "says": m.says,
-        "parameters": parameters_json(&m.parameters),
-    });
-    if let Some(axis) = m.coordinate {
-        value["coordinate"] = json!(axis_name(axis));
-    }
-    if let Some(form) = m.form {
-        value["form"] = json!(form);
-    }
-    if m.variants.len() > 1 {
-        let variants = m.variants.iter().map(|(k, v)| (k.clone(), json!(v)));
-        value["variants"] = Value::Object(variants.collect::<Map<_, _>>());
-    }
-    value
-}
-
-fn rival_json(rival: &Rival) -> Value {
-    json!({
-        "names": rival.names,
-        "log10_bayes_factor": rival.log10_bayes_factor,
-    })
-}
-
-fn force_json(force: &FreeForce) -> Value {
-    json!({
-        "coordinate": axis_name(force.axis), "at": force.at,
-        "mean": force.mean, "sd": force.sd, "band": force.width,
-        "log10_bayes_factor": force.log_bayes_factor / LN_10,
-    })
-}
-
-impl Diagnosis {
-    /// `diagnosis.json`.
-    pub fn json(&self) -> Value {
-        let (b, i) = (&self.baseline, &self.improvement);
-        json!({
-            "schema": 1,
-            "event": self.event,
-            "baseline": {
-                "friction": b.friction, "noise": b.noise,
-                "mechanisms": b.mechanisms,
-                "log_evidence": b.log_evidence, "rmse": b.rmse,
-                "ljung_box_p": b.ljung_box_p,
-                "shapiro_wilk_p": b.shapiro_wilk_p,
-                "predictive_p": b.predictive_p,
-                "stationary_sd": b.stationary_sd,
-                "innovation_sd": b.innovation_sd,
-                "instrument": b.instrument,
-            },
-            "verdict": self.verdict.name(),
-            "mismatch":
-                self.mismatch.iter().map(mismatch_json).collect::<Vec<_>>(),
-            "mechanisms":
-                self.mechanisms.iter().map(judged_json).collect::<Vec<_>>(),
-            "selected": self.selected,
-            "group": self.group,
-            "rivals": self.rivals.iter().map(rival_json).collect::<Vec<_>>(),
-            "improvement": {
-                "log10_bayes_factor": i.log10_bayes_factor,
-                "rmse_before": i.rmse.before,
-                "rmse_after": i.rmse.after,
-                "elpd_before": i.elpd.before,
-                "elpd_after": i.elpd.after,
-                "heldout_rmse_before": i.heldout_rmse.before,
-                "heldout_rmse_after": i.heldout_rmse.after,
-                "coverage90_before": i.coverage90.before,
-                "coverage90_after": i.coverage90.after,
-                "ljung_box_p_before": i.ljung_box_p.before,
-                "ljung_box_p_after": i.ljung_box_p.after,
-                "least_squares_before": i.least_squares.before,
-                "least_squares_after": i.least_squares.after,
-                "stationary_sd_before": i.stationary_sd.before,
-                "stationary_sd_after": i.stationary_sd.after,
-            },
-            "parameters": parameters_json(&self.parameters),
-            "corrected": {
-                "equation": self.corrected.equation,
-                "model": self.corrected.model,
-                "mechanisms": self.corrected.labels,
-            },
-            "forces":
-                self.forces.iter().map(force_json).collect::<Vec<_>>(),
-            "separating": self.separating,
-            "seconds": self.seconds,
-            "warnings": self.warnings,
-        })
-    }
 }

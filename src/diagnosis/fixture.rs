@@ -10,8 +10,13 @@ use crate::physics::Track;
 use crate::physics::forces::Axis;
 use crate::predict::Bands;
 
-pub(super) fn told(name: &str, unit: &str, q50: f64, sd: f64) -> Told {
-    Told {
+pub(super) fn parameter(
+    name: &str,
+    unit: &str,
+    q50: f64,
+    sd: f64,
+) -> ParameterSummary {
+    ParameterSummary {
         name: name.to_owned(),
         unit: unit.to_owned(),
         mean: q50,
@@ -27,7 +32,7 @@ fn judged(
     kind: Hypothesis,
     probability: f64,
     log10_bayes_factor: f64,
-    parameters: Vec<Told>,
+    parameters: Vec<ParameterSummary>,
 ) -> Judged {
     Judged {
         name: name.to_owned(),
@@ -46,7 +51,7 @@ fn judged(
 }
 
 /// As the catalogue calls it.
-fn noun(name: &str, parameters: &[Told]) -> Noun {
+fn noun(name: &str, parameters: &[ParameterSummary]) -> Noun {
     let times = vec![1.0, 2.0];
     let series = Series::velocity(times, vec![1.0, 2.0]).unwrap();
     let track = Track::incline(30.0, 100.0).unwrap();
@@ -58,11 +63,11 @@ fn noun(name: &str, parameters: &[Told]) -> Noun {
     }
 }
 
-fn patch() -> Vec<Told> {
+fn patch() -> Vec<ParameterSummary> {
     vec![
-        told("delta_mu", "1", 0.142, 0.018),
-        told("from", "m", 131.8, 1.9),
-        told("length", "m", 55.3, 4.1),
+        parameter("delta_mu", "1", 0.142, 0.018),
+        parameter("from", "m", 131.8, 1.9),
+        parameter("length", "m", 55.3, 4.1),
     ]
 }
 
@@ -80,14 +85,14 @@ fn mechanisms() -> Vec<Judged> {
             Hypothesis::Mechanism(Family::Physics),
             0.05,
             20.0,
-            vec![told("growth", "1/m", 0.0031, 0.0004)],
+            vec![parameter("growth", "1/m", 0.0031, 0.0004)],
         ),
         judged(
             "surge",
             Hypothesis::Mechanism(Family::Physics),
             0.017,
             19.6,
-            vec![told("force", "m/s2", -0.91, 0.1)],
+            vec![parameter("force", "m/s2", -0.91, 0.1)],
         ),
         judged("unknown", Hypothesis::Unknown, 0.002, 18.6, vec![]),
         judged(
@@ -95,14 +100,14 @@ fn mechanisms() -> Vec<Judged> {
             Hypothesis::Mechanism(Family::Measurement),
             0.0006,
             18.1,
-            vec![told("ahead", "s", 0.82, 0.08)],
+            vec![parameter("ahead", "s", 0.82, 0.08)],
         ),
         judged(
             "ar1",
             Hypothesis::Mechanism(Family::Errors),
             0.0004,
             17.9,
-            vec![told("phi", "1", 0.97, 0.01)],
+            vec![parameter("phi", "1", 0.97, 0.01)],
         ),
         judged("none", Hypothesis::Baseline, 1e-20, 0.0, vec![]),
     ];
@@ -117,7 +122,7 @@ fn mechanisms() -> Vec<Judged> {
         ("heavy-tails", Hypothesis::Mechanism(Family::Errors), -0.9),
     ];
     all.extend(rest.map(|(name, kind, bf)| {
-        judged(name, kind, 1e-9, bf, vec![told("amount", "1", 0.1, 0.1)])
+        judged(name, kind, 1e-9, bf, vec![parameter("amount", "1", 0.1, 0.1)])
     }));
     all
 }
@@ -192,7 +197,7 @@ fn force(axis: Axis, end: f64, middle: f64, log: f64) -> FreeForce {
 }
 
 fn improvement() -> Improvement {
-    let pair = |before, after| Pair { before, after };
+    let pair = |before, after| BeforeAfter { before, after };
     Improvement {
         log10_bayes_factor: 21.3,
         rmse: pair(1.9, 0.31),
@@ -260,12 +265,12 @@ pub(super) fn diagnosis() -> Diagnosis {
         improvement: improvement(),
         separating: None,
         parameters: vec![
-            told("friction-patch.delta_mu", "1", 0.139, 0.017),
-            told("friction-patch.from", "m", 131.9, 1.8),
-            told("friction-patch.length", "m", 55.1, 4.0),
-            told("mu", "1", 0.213, 0.012),
-            told("xi", "m/s2", 1410.0, 220.0),
-            told("sigma2", "m2/s2", 0.096, 0.015),
+            parameter("friction-patch.delta_mu", "1", 0.139, 0.017),
+            parameter("friction-patch.from", "m", 131.9, 1.8),
+            parameter("friction-patch.length", "m", 55.1, 4.0),
+            parameter("mu", "1", 0.213, 0.012),
+            parameter("xi", "m/s2", 1410.0, 220.0),
+            parameter("sigma2", "m2/s2", 0.096, 0.015),
         ],
         corrected: corrected(),
         draws: None,
@@ -296,7 +301,7 @@ pub(super) fn adequate() -> Diagnosis {
     }
     d.improvement = Improvement {
         log10_bayes_factor: f64::NAN,
-        rmse: Pair { before: f64::NAN, after: f64::NAN },
+        rmse: BeforeAfter { before: f64::NAN, after: f64::NAN },
         ..improvement()
     };
     d.baseline.rmse = 0.3;
@@ -334,7 +339,7 @@ pub(super) fn all() -> Vec<Diagnosis> {
     rich.baseline.innovation_sd = Some(0.4);
     rich.baseline.instrument = Some(0.1);
     rich.selected.push("clock-offset".to_owned());
-    rich.parameters.push(told("clock-offset.ahead", "s", 0.8, 0.1));
+    rich.parameters.push(parameter("clock-offset.ahead", "s", 0.8, 0.1));
     rich.group =
         ["friction-patch", "entrainment", "surge"].map(str::to_owned).to_vec();
     rich.separating =

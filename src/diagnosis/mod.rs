@@ -3,11 +3,13 @@
 
 mod compare;
 mod decide;
+mod declarations;
 mod diagnose;
 mod evidence;
 mod findings;
 #[cfg(test)]
 mod fixture;
+mod hypothesis;
 mod locate;
 mod options;
 mod tell;
@@ -21,9 +23,10 @@ pub use diagnose::{diagnose, diagnose_together};
 pub use evidence::attribute::{Attribution, attribute, pair};
 pub use evidence::fit::{Fit, fit};
 pub use findings::{
-    Baseline, Corrected, Diagnosis, Hypothesis, Improvement, Judged, Mismatch,
-    Pair, Pictured, Rival, Told, Verdict,
+    Baseline, BeforeAfter, Corrected, Diagnosis, Improvement, Judged,
+    Mismatch, ParameterSummary, Pictured, Rival, Verdict,
 };
+pub use hypothesis::Hypothesis;
 pub use locate::{CELLS, FreeForce, locate};
 pub use options::Options;
 #[cfg(feature = "pages")]

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::diagnosis::decide::judge::Odds;
-use crate::diagnosis::tell::paste::declarations;
+use crate::diagnosis::declarations::declarations;
 use crate::mechanism::Mechanism;
 use crate::mechanism::catalogue::Catalogue;
 use crate::model::{Assembled, Together};

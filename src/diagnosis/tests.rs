@@ -130,11 +130,11 @@ fn a_terminal_holds_the_summary() {
 fn broken() -> Diagnosis {
     let nan = f64::NAN;
     let mut d = diagnosis();
-    let pair = Pair { before: nan, after: nan };
+    let pair = BeforeAfter { before: nan, after: nan };
     d.improvement = Improvement {
         log10_bayes_factor: nan,
         rmse: pair,
-        elpd: Pair { before: f64::INFINITY, after: 1e300 },
+        elpd: BeforeAfter { before: f64::INFINITY, after: 1e300 },
         heldout_rmse: pair,
         coverage90: pair,
         ljung_box_p: pair,

@@ -51,3 +51,73 @@ pub(super) fn missed(
     let mended = mixture.mended(&places, &even, &targets);
     Ok(Checked { excess, mended })
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+
+    use super::*;
+    use crate::error::Outcome;
+    use crate::infer::proposal::population;
+    use crate::infer::weights::quality;
+    use crate::model::{Label, Number, Program, Run};
+    use crate::prior::{AnyPrior, Normal};
+    use crate::scalar::Real;
+
+    /// 1 was seen of N(x^2, 0.45): two hills, at 1 and -1, with a saddle of a
+    /// twelfth between them. 0 was seen of N(y_i, 0.25): with so many
+    /// coordinates the tails of a component on one hill hardly reach the other.
+    struct Hills;
+
+    impl Program for Hills {
+        fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
+            let wide = AnyPrior::Normal(0.0, 300.0);
+            let x = run.scalar(Label::new("x", "1"), wide)?;
+            run.observe_each(&1.0, Normal::new(x * x, Real::new(0.45)))?;
+            for i in 0..5 {
+                let y = run.scalar(Label::new("y", "1").at(i), wide)?;
+                run.observe_each(&0.0, Normal::new(y, Real::new(0.25)))?;
+            }
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn draws_that_are_moved_on_tell_of_a_hill_that_is_missed() {
+        let posterior = Posterior::new(&Hills).unwrap();
+        let on = |hills: &[f64]| {
+            let part = |x: &f64| {
+                let mut at = DVector::zeros(6);
+                at[0] = *x;
+                (1.0, at, DMatrix::from_diagonal_element(6, 6, 0.06))
+            };
+            Mixture::of(hills.iter().map(part)).unwrap()
+        };
+        let drawn = |mixture: &Mixture| {
+            let base = Base::Mixture(mixture.clone());
+            population(&posterior, &base, 2000, Seed::new(1)).unwrap()
+        };
+        let wider = |mixture: &Mixture, found: &[Particle]| {
+            let schedule = Schedule::default();
+            let seed = Seed::new(2);
+            let checked = missed(&posterior, mixture, found, &schedule, seed);
+            checked.unwrap().mended
+        };
+        let both = on(&[1.0, -1.0]);
+        let all = drawn(&both);
+        assert!(wider(&both, &all).is_none());
+        let one = on(&[1.0]);
+        let half = drawn(&one);
+        let short = log_mean_weight(&all) - log_mean_weight(&half);
+        // Half is missed, and by the draws a fifth are effective.
+        assert!((short - 2f64.ln()).abs() < 0.1, "{short}");
+        let (share, _) = quality(&half);
+        assert!(share > Schedule::default().good_share, "{share}");
+        let mended = wider(&one, &half).expect("a hill is missed");
+        let found = log_mean_weight(&drawn(&mended));
+        // Four standard errors of two means of 2000 draws of which a tenth
+        // are effective; to miss half costs 0.7.
+        let off = found - log_mean_weight(&all);
+        assert!(off.abs() < 4.0 * 2f64.sqrt() * 0.067, "{off}");
+    }
+}

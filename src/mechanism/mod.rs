@@ -2,8 +2,8 @@
 //!
 //! A [`Mechanism`] has a name, one plain sentence, unknown amounts with
 //! priors, and the [`Change`] that given amounts make. The [`catalogue`] holds
-//! those that come along; several events have one each ([`PerEvent`]) or
-//! amounts about a common one ([`Pooled`]).
+//! those that come along. Several events have an amount each, or amounts
+//! about a common one.
 
 pub mod catalogue;
 
@@ -20,5 +20,5 @@ pub use candidate::{
 };
 pub use change::{Change, Covariate};
 pub use extent::Extent;
-pub use per_event::PerEvent;
-pub use pooled::Pooled;
+pub(crate) use per_event::PerEvent;
+pub(crate) use pooled::Pooled;

@@ -23,7 +23,7 @@ struct Own {
 
 /// A mechanism that each of several events has in an amount of its own.
 #[derive(Debug)]
-pub struct PerEvent {
+pub(crate) struct PerEvent {
     each: Vec<Own>,
     events: usize,
     unknowns: Vec<Unknown>,
@@ -32,7 +32,7 @@ pub struct PerEvent {
 impl PerEvent {
     /// One mechanism for each event, of one name, or none where it does not
     /// apply; `None` if it applies to no event.
-    pub fn new(
+    pub(crate) fn new(
         each: Vec<Option<Box<dyn Mechanism>>>,
         labels: &[String],
     ) -> Option<Self> {

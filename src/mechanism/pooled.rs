@@ -24,7 +24,7 @@ const RATIO: f64 = 0.5;
 /// a standard normal deviate; one of a single sign is the common one times
 /// exp(spread times deviate), which keeps its sign.
 #[derive(Debug)]
-pub struct Pooled {
+pub(crate) struct Pooled {
     inner: Arc<dyn Mechanism>,
     unknowns: Vec<Unknown>,
     /// How many of these all events have in common.
@@ -37,7 +37,7 @@ pub struct Pooled {
 impl Pooled {
     /// Pools a mechanism over events with these labels. After its own
     /// unknowns come the spread and each event's deviate.
-    pub fn new(inner: Box<dyn Mechanism>, labels: &[String]) -> Self {
+    pub(crate) fn new(inner: Box<dyn Mechanism>, labels: &[String]) -> Self {
         let mut unknowns = inner.unknowns();
         let (signed, scale, unit) = match unknowns.first() {
             Some(Unknown { prior: AnyPrior::Normal(_, sd), unit, .. }) => {

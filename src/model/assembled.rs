@@ -299,7 +299,7 @@ impl Assembled {
     ///
     /// # Errors
     /// [`Stop::Reject`] where one lies outside its prior.
-    pub fn ask_laws<K: Number>(
+    pub(super) fn ask_laws<K: Number>(
         &self,
         run: &mut Run<'_, K>,
     ) -> Result<List<Real<K>>, Stop> {
@@ -311,7 +311,7 @@ impl Assembled {
     ///
     /// # Errors
     /// As in [`Program::run`].
-    pub fn score<K: Number>(
+    pub(super) fn score<K: Number>(
         &self,
         run: &mut Run<'_, K>,
         laws: &[Real<K>],

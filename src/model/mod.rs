@@ -22,7 +22,7 @@ mod slice;
 mod together;
 mod with;
 
-pub use alone::{Alone, Common};
+pub(crate) use alone::{Alone, Common};
 pub use assembled::Assembled;
 pub use blocks::declared_blocks;
 pub use information::Information;

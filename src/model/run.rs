@@ -137,6 +137,8 @@ pub struct Run<'r, K: Kind> {
     pub(super) log_likelihood: Real<K>,
     listener: Option<&'r mut dyn Listener<K>>,
     setting: Setting<'r, K>,
+    /// Whether an event was come to in a run that does not enter all of them.
+    is_past_common: bool,
 }
 
 impl<'r, K: Kind> Run<'r, K> {
@@ -159,6 +161,7 @@ impl<'r, K: Kind> Run<'r, K> {
                 event: "",
                 entered: Entered::All,
             },
+            is_past_common: false,
         }
     }
 
@@ -188,6 +191,7 @@ impl<'r, K: Kind> Run<'r, K> {
         label: &str,
         body: impl FnOnce(&mut Run<'_, K>) -> Outcome,
     ) -> Outcome {
+        self.is_past_common = self.setting.entered != Entered::All;
         match self.setting.entered {
             Entered::Only(one) if one != index => return Ok(()),
             Entered::Nothing => return Ok(()),
@@ -222,6 +226,7 @@ impl<'r, K: Kind> Run<'r, K> {
             log_likelihood: self.log_likelihood,
             listener: self.listener.as_mut().map(|l| &mut **l as _),
             setting,
+            is_past_common: false,
         };
         let outcome = body(&mut inner);
         self.position = inner.position;
@@ -246,6 +251,9 @@ impl<'r, K: Kind> Run<'r, K> {
         label: Label<'_>,
         prior: P,
     ) -> Result<Real<K>, Stop> {
+        if self.is_past_common {
+            return Err(misplaced(&label));
+        }
         let x = self.value(&prior, &label)?;
         self.position += 1;
         let log_density = prior.log_density(x);
@@ -482,6 +490,16 @@ fn not_finite(index: usize, data: &[f64]) -> Stop {
         index + 1,
         data.len(),
         data[index]
+    )))
+}
+
+#[cold]
+fn misplaced(label: &Label<'_>) -> Stop {
+    Stop::Fail(Error::input(format!(
+        "{} is declared after an event and outside of all; expected what \
+         events have in common before the first of them: declare it there, \
+         or within an event",
+        label.name()
     )))
 }
 

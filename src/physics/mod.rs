@@ -23,8 +23,7 @@ pub use forces::Forces;
 pub use friction::{Friction, Rate, Site, Sum, Varies};
 pub use lanes::speeds;
 pub use track::Track;
-pub(crate) use walk::rest_changed;
-pub use walk::{Path, Release, Rest, State, rest, sample};
+pub use walk::{Path, Release, Rest, State, rest, rest_changed, sample};
 
 /// The acceleration of gravity \[m/s2\].
 pub const GRAVITY: f64 = 9.81;

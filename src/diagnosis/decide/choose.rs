@@ -5,15 +5,14 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::diagnosis::compare::before_and_after::rows_of;
+use crate::diagnosis::compare::checks::rows_of;
 use crate::diagnosis::decide::judge::Beforehand;
 use crate::diagnosis::evidence::attribute::{
     Attribution, Known, extend, pair,
 };
 use crate::diagnosis::evidence::fit::Fit;
-use crate::diagnosis::findings::{
-    Hypothesis, Judged, Rival, UNKNOWN, Verdict,
-};
+use crate::diagnosis::findings::{Judged, Rival, Verdict};
+use crate::diagnosis::hypothesis::{Hypothesis, UNKNOWN};
 use crate::draws::median;
 use crate::error::Result;
 use crate::mechanism::{Family, Mechanism, Reach};

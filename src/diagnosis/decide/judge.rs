@@ -5,11 +5,10 @@ use std::f64::consts::LN_10;
 
 use crate::diagnosis::evidence::attribute::Attribution;
 use crate::diagnosis::evidence::fit::Fit;
-use crate::diagnosis::findings::{
-    Hypothesis, Judged, NONE, Told, UNKNOWN, Verdict,
-};
+use crate::diagnosis::findings::{Judged, ParameterSummary, Verdict};
+use crate::diagnosis::hypothesis::{Hypothesis, NONE, UNKNOWN};
 use crate::diagnosis::locate::{FreeForce, NOUN, SAYS};
-use crate::draws::{Summary, log_sum_exp, summarise};
+use crate::draws::{log_sum_exp, summarise};
 use crate::error::{Error, Result};
 use crate::mechanism::{Candidate, Family, Mechanism, Noun};
 use crate::physics::forces::Axis;
@@ -99,7 +98,11 @@ fn judged(
         .iter()
         .max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence));
     let Some((mechanism, fit)) = best else { return Judged::default() };
-    let parameters = told(&summarise(&fit.draws)[..fit.added], Some(name));
+    let parameters: Vec<ParameterSummary> = summarise(&fit.draws)
+        .iter()
+        .take(fit.added)
+        .map(|column| ParameterSummary::of(column).named_within(name))
+        .collect();
     let amplitude = parameters.first().map_or(f64::NAN, |p| p.q50);
     Judged {
         name: name.into(),
@@ -223,28 +226,6 @@ pub(crate) fn group(all: &[Judged]) -> Vec<String> {
         all.iter().filter(|m| best - m.log10_bayes_factor < 1.0).collect();
     near.sort_by(|a, b| b.log10_bayes_factor.total_cmp(&a.log10_bayes_factor));
     near.into_iter().take(3).map(|m| m.name.clone()).collect()
-}
-
-/// Parameters in figures, without their mechanism's name before them.
-pub(crate) fn told(summaries: &[Summary], within: Option<&str>) -> Vec<Told> {
-    summaries
-        .iter()
-        .map(|s| {
-            let plain = within
-                .and_then(|name| s.name.strip_prefix(name))
-                .and_then(|rest| rest.strip_prefix('.'))
-                .unwrap_or(&s.name);
-            Told {
-                name: plain.to_owned(),
-                unit: s.unit.clone(),
-                mean: s.mean,
-                sd: s.sd,
-                q05: s.q05,
-                q50: s.q50,
-                q95: s.q95,
-            }
-        })
-        .collect()
 }
 
 /// The recording that would tell the members of a group apart.

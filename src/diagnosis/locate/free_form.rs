@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::process::Process;
 use super::{CELLS, NOUN, SAYS};
 use crate::block::List;
-use crate::diagnosis::findings::UNKNOWN;
+use crate::diagnosis::hypothesis::UNKNOWN;
 use crate::error::{Error, Result};
 use crate::mechanism::{
     Candidate, Change, Extent, Family, Missing, Noun, Unknown,

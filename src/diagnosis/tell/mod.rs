@@ -1,5 +1,6 @@
 //! A diagnosis as words, tables, pictures, a page, and a model to paste.
 
+mod json;
 #[cfg(feature = "pages")]
 pub(crate) mod page;
 pub(crate) mod paste;

@@ -7,7 +7,9 @@ use crate::diagnosis::tell::pictures::{Figure, bars, forces, of_event};
 use crate::diagnosis::tell::words::{
     before_and_after, in_words, is_corrected,
 };
-use crate::diagnosis::{Diagnosis, Hypothesis, Pictured, Told, Verdict};
+use crate::diagnosis::{
+    Diagnosis, Hypothesis, ParameterSummary, Pictured, Verdict,
+};
 use crate::report::digits::{beside, significant};
 use crate::report::standalone;
 use crate::report::text::{is_synthetic, plain, unit};
@@ -247,7 +249,7 @@ fn parameters(d: &Diagnosis) -> Markup {
     }
 }
 
-fn row(p: &Told) -> Markup {
+fn row(p: &ParameterSummary) -> Markup {
     let number = |x: f64| beside(x, p.sd).replace('-', "−");
     html! {
         tr {

@@ -1,6 +1,8 @@
 //! Mechanisms, places and figures in words.
 
-use crate::diagnosis::{Baseline, Diagnosis, Judged, Mismatch, Told};
+use crate::diagnosis::{
+    Baseline, Diagnosis, Judged, Mismatch, ParameterSummary,
+};
 use crate::physics::forces::Axis;
 use crate::report::digits::{beside, short, significant};
 use crate::report::text::{is_synthetic, plain, unit};
@@ -101,19 +103,25 @@ pub(crate) fn log10(x: f64) -> String {
 }
 
 /// A parameter's median with its 90 % interval.
-pub(crate) fn interval(p: &Told) -> String {
+pub(crate) fn interval(p: &ParameterSummary) -> String {
     format!("{} to {}", beside(p.q05, p.sd), beside(p.q95, p.sd))
 }
 
 /// The parameter's own name, without that of its mechanism.
-pub(crate) fn own_name<'a>(p: &'a Told, mechanism: &str) -> &'a str {
+pub(crate) fn own_name<'a>(
+    p: &'a ParameterSummary,
+    mechanism: &str,
+) -> &'a str {
     p.within(mechanism).unwrap_or(&p.name)
 }
 
 /// A selected mechanism's parameters: those of the corrected model where it
 /// has them, else those that the mechanism had alone.
-pub(crate) fn amounts<'a>(d: &'a Diagnosis, name: &str) -> Vec<&'a Told> {
-    let joint: Vec<&Told> =
+pub(crate) fn amounts<'a>(
+    d: &'a Diagnosis,
+    name: &str,
+) -> Vec<&'a ParameterSummary> {
+    let joint: Vec<&ParameterSummary> =
         d.parameters.iter().filter(|p| p.within(name).is_some()).collect();
     match judged(d, name) {
         Some(alone) if joint.is_empty() => alone.parameters.iter().collect(),

@@ -1,6 +1,6 @@
 //! Where the mismatch is, as it is told: stretches with force and sign.
 
-use crate::diagnosis::compare::before_and_after::recordings;
+use crate::diagnosis::compare::checks::recordings;
 use crate::diagnosis::findings::{Diagnosis, Mismatch, Pictured, Verdict};
 use crate::diagnosis::locate::{FreeForce, Stretch};
 use crate::mechanism::Reach;
@@ -36,7 +36,7 @@ pub(crate) fn mismatch(
                     from: reach.from,
                     to: reach.to.min(end).max(reach.from),
                 };
-                courses.mismatch(force, stretch, Vec::new())
+                courses.mismatch(force, stretch, &[])
             })
             .collect();
     }
@@ -47,7 +47,9 @@ pub(crate) fn mismatch(
     }
     joined(&runs)
         .into_iter()
-        .filter_map(|(stretch, parts)| courses.mismatch(force, stretch, parts))
+        .filter_map(|(stretch, parts)| {
+            courses.mismatch(force, stretch, &parts)
+        })
         .collect()
 }
 
@@ -87,7 +89,7 @@ impl<'a> Courses<'a> {
         &self,
         force: &FreeForce,
         stretch: Stretch,
-        parts: Vec<Stretch>,
+        parts: &[Stretch],
     ) -> Option<Mismatch> {
         let covered = |course: &Course| {
             let [first, last] = course.ends(force.axis);
@@ -141,7 +143,7 @@ impl<'a> Course<'a> {
         &self,
         force: &FreeForce,
         stretch: Stretch,
-        parts: Vec<Stretch>,
+        parts: &[Stretch],
     ) -> Mismatch {
         let (times, places) = match force.axis {
             Axis::Time => {
@@ -156,13 +158,12 @@ impl<'a> Course<'a> {
         };
         let mut drawn = force.over(stretch);
         drawn.sort_by(f64::total_cmp);
-        let mean = drawn.iter().sum::<f64>() / drawn.len() as f64;
         let at = |p: f64| drawn[(p * (drawn.len() - 1) as f64) as usize];
-        let same = drawn.iter().filter(|f| **f * mean > 0.0).count();
-        let middle = 0.5 * (places[0] + places[1]);
-        let track = self.event.track();
-        let piece = track.piece_at((middle - track.origin()).max(0.0));
-        let load = track.pieces()[piece].load;
+        let force_there = mean(&drawn);
+        let same = drawn.iter().filter(|f| **f * force_there > 0.0).count();
+        let load = self.load(0.5 * (places[0] + places[1]));
+        let part =
+            |part: &Stretch| (part.from, part.to, mean(&force.over(*part)));
         Mismatch {
             axis: force.axis,
             from: stretch.from,
@@ -171,21 +172,25 @@ impl<'a> Course<'a> {
             time_to: times[1],
             place_from: places[0],
             place_to: places[1],
-            specific_force: mean,
+            specific_force: force_there,
             specific_force_q05: at(0.05),
             specific_force_q95: at(0.95),
-            delta_mu: if load > 0.0 { -mean / load } else { f64::NAN },
+            delta_mu: if load > 0.0 { -force_there / load } else { f64::NAN },
             probability: same as f64 / drawn.len() as f64,
-            parts: parts
-                .into_iter()
-                .map(|part| {
-                    let over = force.over(part);
-                    let mean = over.iter().sum::<f64>() / over.len() as f64;
-                    (part.from, part.to, mean)
-                })
-                .collect(),
+            parts: parts.iter().map(part).collect(),
         }
     }
+
+    /// The load of the ground at a place \[m/s2\].
+    fn load(&self, place: f64) -> f64 {
+        let track = self.event.track();
+        let piece = track.piece_at((place - track.origin()).max(0.0));
+        track.pieces()[piece].load
+    }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// Linear between points whose x do not decrease; the ends beyond.

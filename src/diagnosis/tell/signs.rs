@@ -4,7 +4,7 @@
 use crate::diagnosis::tell::phrases::{
     amounts, own_name, probability, with_unit,
 };
-use crate::diagnosis::{Diagnosis, Told};
+use crate::diagnosis::{Diagnosis, ParameterSummary};
 use crate::draws::median;
 use crate::report::digits::significant;
 use crate::report::text::plain;
@@ -34,7 +34,7 @@ pub(crate) fn either_sign(d: &Diagnosis) -> Option<String> {
 
 /// The modes of either sign, the likelier one first; `None` where there is
 /// one mode only.
-fn two_modes(d: &Diagnosis, amplitude: &Told) -> Option<String> {
+fn two_modes(d: &Diagnosis, amplitude: &ParameterSummary) -> Option<String> {
     let draws = d.draws.as_ref()?;
     let of = |name: &String| *name == amplitude.name;
     let all = draws.pooled(draws.names().iter().position(of)?);

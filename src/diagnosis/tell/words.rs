@@ -6,8 +6,8 @@ use crate::diagnosis::tell::phrases::{
 };
 use crate::diagnosis::tell::signs::either_sign;
 use crate::diagnosis::{
-    Baseline, Diagnosis, Hypothesis, Judged, Mismatch, Pair, Rival, Told,
-    Verdict,
+    Baseline, BeforeAfter, Diagnosis, Hypothesis, Judged, Mismatch,
+    ParameterSummary, Rival, Verdict,
 };
 use crate::mechanism::Family;
 use crate::report::digits::{beside, p_value, per_cent, short, significant};
@@ -50,7 +50,7 @@ pub fn in_words(d: &Diagnosis) -> Vec<String> {
             said.push(uncorrected(d));
             said.push(residuals(&d.baseline));
         }
-        said.extend(apart(d));
+        said.extend(ambiguity(d));
     }
     said.extend(trap(d));
     said.extend(warnings(d));
@@ -127,7 +127,7 @@ fn force_interval(m: &Mismatch) -> String {
     if !(low.is_finite() && high.is_finite()) {
         return String::new();
     }
-    // Told as a size in the stated direction.
+    // ParameterSummary as a size in the stated direction.
     let (low, high) =
         if m.specific_force > 0.0 { (low, high) } else { (-high, -low) };
     let sd = (high - low) / 3.3;
@@ -273,7 +273,7 @@ fn sizes(d: &Diagnosis) -> Option<String> {
 }
 
 /// `delta_mu = 0.14 (0.11 to 0.17)`.
-fn amount(p: &Told, mechanism: &str) -> String {
+fn amount(p: &ParameterSummary, mechanism: &str) -> String {
     let middle = with_unit(&beside(p.q50, p.sd), &p.unit);
     let name = plain(own_name(p, mechanism));
     format!("{name} = {middle} ({})", interval(p))
@@ -294,7 +294,9 @@ fn better(d: &Diagnosis) -> String {
     let before = with_unit(&significant(i.rmse.before, 2), recorded_in(d));
     let after = with_unit(&significant(i.rmse.after, 2), recorded_in(d));
     let mut said = match i.rmse {
-        Pair { before: b, after: a } if b.is_finite() && a.is_finite() => {
+        BeforeAfter { before: b, after: a }
+            if b.is_finite() && a.is_finite() =>
+        {
             let way = if a < b { "falls" } else { "goes" };
             format!(
                 "With it the root mean square error {way} from {before} \
@@ -321,7 +323,7 @@ fn recorded_in(d: &Diagnosis) -> &str {
 /// Predictions: of the stretch that was held out, and the bands.
 fn ahead(d: &Diagnosis) -> Option<String> {
     let i = &d.improvement;
-    let known = |p: Pair| p.before.is_finite() && p.after.is_finite();
+    let known = |p: BeforeAfter| p.before.is_finite() && p.after.is_finite();
     let mut clauses = Vec::new();
     if known(i.heldout_rmse) {
         let after = significant(i.heldout_rmse.after, 2);
@@ -343,7 +345,7 @@ fn ahead(d: &Diagnosis) -> Option<String> {
 }
 
 /// What the recording cannot tell apart, and what would.
-fn apart(d: &Diagnosis) -> Option<String> {
+fn ambiguity(d: &Diagnosis) -> Option<String> {
     let separating = d.separating.as_deref().map(plain);
     if d.group.len() < 2 {
         return separating;
@@ -491,14 +493,14 @@ pub(crate) fn before_and_after(d: &Diagnosis) -> Vec<Row> {
         "" => String::new(),
         unit => format!(" [{unit}]"),
     };
-    let row = |what: String, pair: Pair, say: fn(f64) -> String| Row {
+    let row = |what: String, pair: BeforeAfter, say: fn(f64) -> String| Row {
         what,
         before: say(pair.before),
         after: say(pair.after),
     };
-    let evidence = Pair { before: 0.0, after: i.log10_bayes_factor };
+    let evidence = BeforeAfter { before: 0.0, after: i.log10_bayes_factor };
     let two: fn(f64) -> String = |x| significant(x, 3);
-    let rmse = Pair {
+    let rmse = BeforeAfter {
         before: finite(i.rmse.before, d.baseline.rmse, is_corrected(d)),
         after: i.rmse.after,
     };

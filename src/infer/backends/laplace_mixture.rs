@@ -150,15 +150,13 @@ pub(in crate::infer) fn mixture(components: &[Component]) -> Result<Mixture> {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{DMatrix, DVector};
     use statrs::function::erf::erf;
 
     use super::*;
     use crate::error::{Outcome, Stop};
-    use crate::infer::Quiet;
+    use crate::infer::{Evidence, Quiet, Smc};
     use crate::model::{Label, Number, Program, Run};
-    use crate::prior::{AnyPrior, Normal};
-    use crate::scalar::Real;
+    use crate::prior::AnyPrior;
 
     /// b ~ N(0, 1) is asked for only where a ~ N(0, 1) is near 0.
     struct CutShort;
@@ -177,68 +175,14 @@ mod tests {
         }
     }
 
-    /// 1 was seen of N(x^2, 0.45): two hills, at 1 and -1, with a saddle of a
-    /// twelfth between them. 0 was seen of N(y_i, 0.25): with so many
-    /// coordinates the tails of a component on one hill hardly reach the other.
-    struct Hills;
-
-    impl Program for Hills {
-        fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
-            let wide = AnyPrior::Normal(0.0, 300.0);
-            let x = run.scalar(Label::new("x", "1"), wide)?;
-            run.observe_each(&1.0, Normal::new(x * x, Real::new(0.45)))?;
-            for i in 0..5 {
-                let y = run.scalar(Label::new("y", "1").at(i), wide)?;
-                run.observe_each(&0.0, Normal::new(y, Real::new(0.25)))?;
-            }
-            Ok(())
-        }
-    }
-
-    #[test]
-    fn draws_that_are_moved_on_tell_of_a_hill_that_is_missed() {
-        let posterior = Posterior::new(&Hills).unwrap();
-        let on = |hills: &[f64]| {
-            let part = |x: &f64| {
-                let mut at = DVector::zeros(6);
-                at[0] = *x;
-                (1.0, at, DMatrix::from_diagonal_element(6, 6, 0.06))
-            };
-            Mixture::of(hills.iter().map(part)).unwrap()
-        };
-        let drawn = |mixture: &Mixture| {
-            let base = Base::Mixture(mixture.clone());
-            population(&posterior, &base, 2000, Seed::new(1)).unwrap()
-        };
-        let wider = |mixture: &Mixture, found: &[Particle]| {
-            beyond(&posterior, mixture, found, Seed::new(2)).unwrap()
-        };
-        let both = on(&[1.0, -1.0]);
-        let all = drawn(&both);
-        assert!(wider(&both, &all).is_none());
-        let one = on(&[1.0]);
-        let half = drawn(&one);
-        let missed = log_mean_weight(&all) - log_mean_weight(&half);
-        // Half is missed, and by the draws a fifth are effective.
-        assert!((missed - 2f64.ln()).abs() < 0.1, "{missed}");
-        let logs: Vec<f64> = half.iter().map(Particle::log_weight).collect();
-        assert!(share(&logs) > ENOUGH, "{}", share(&logs));
-        let mended = wider(&one, &half).expect("a hill is missed");
-        let found = log_mean_weight(&drawn(&mended));
-        // Four standard errors of two means of 2000 draws of which a tenth
-        // are effective; to miss half costs 0.7.
-        let off = found - log_mean_weight(&all);
-        assert!(off.abs() < 4.0 * 2f64.sqrt() * 0.067, "{off}");
-    }
-
     #[test]
     fn draws_that_are_cut_short_count_as_nothing() {
         // One draw in 25 is whole: of eight mostly none.
         let posterior = Posterior::new(&CutShort).unwrap();
-        let peaks = LaplaceMixture { starts: 8, ..LaplaceMixture::default() };
+        let mixture = LaplaceMixture::default();
         let smc = Smc { particles: 4000, ..Smc::default() };
         let known = erf(NEAR / 2.0_f64.sqrt()).ln();
-        for backend in [&peaks as &dyn Backend, &smc] {
+        for backend in [&mixture as &dyn Backend, &smc] {
             let found = backend.explore(&posterior, Seed::new(1), &Quiet);
             let Evidence { log, se, .. } = found.unwrap().evidence.unwrap();
             // Four standard errors of the estimate.

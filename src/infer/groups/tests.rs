@@ -84,15 +84,17 @@ fn log_evidence() -> f64 {
 #[test]
 fn one_within_the_other_is_as_all_at_once() {
     let known = log_evidence();
-    let peaks = LaplaceMixture::default();
+    let laplace = LaplaceMixture::default();
     with_events(|grouped, common| {
         let seed = Seed::new(1);
         let assembly = Assembly::new(grouped, common);
         let whole = Posterior::new(&assembly).unwrap();
-        let parts = peaks.parts(&whole, seed.child(0)).unwrap();
+        let LaplaceMixture { space, schedule } = &laplace;
+        let parts = components(&whole, space, schedule, seed.child(0));
+        let parts = parts.unwrap();
         let nested =
-            peaks.nested(grouped, common, &parts, seed.child(1), &Quiet);
-        let either = peaks.within_common(grouped, common, seed, &Quiet);
+            laplace.nested(grouped, common, &parts, seed.child(1), &Quiet);
+        let either = laplace.within_common(grouped, common, seed, &Quiet);
         let [nested, either] = [nested, either].map(|found| {
             let found = found.unwrap();
             assert_eq!(found.warnings, Vec::<String>::new());

@@ -14,13 +14,9 @@ type Maker = Arc<dyn Fn(&Extent) -> Box<dyn Mechanism> + Send + Sync>;
 /// The mechanisms that a diagnosis weighs: those that come along, and a
 /// user's own.
 ///
-/// ```
-/// use couloir::mechanism::catalogue::{Catalogue, Cohesion};
-/// // Under a name of its own, any type that is `Candidate` and `Missing`.
-/// let more = Catalogue::default()
-///     .with(|extent| Box::new(Cohesion { extent: *extent }));
-/// # let _ = more;
-/// ```
+/// `Catalogue::default().with(|e| Box::new(Mine { extent: *e }))` has one more,
+/// a type that is [`Candidate`] and [`Missing`](crate::mechanism::Missing),
+/// under a name of its own.
 #[derive(Clone, Default)]
 pub struct Catalogue {
     further: Vec<Maker>,

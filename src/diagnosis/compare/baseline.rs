@@ -2,7 +2,7 @@
 
 use statrs::distribution::{ContinuousCDF, Normal};
 
-use crate::diagnosis::compare::before_and_after::Figures;
+use crate::diagnosis::compare::checks::Checks;
 use crate::diagnosis::evidence::fit::Fit;
 use crate::diagnosis::findings::Baseline;
 use crate::diagnosis::options::Options;
@@ -12,7 +12,7 @@ use crate::observe::Event;
 /// How the model as it was stands to the recording.
 pub(crate) fn baseline(
     none: &Fit,
-    old: &Figures,
+    old: &Checks,
     event: &Event,
     options: &Options,
 ) -> Baseline {

@@ -1,10 +1,10 @@
-//! A fitted model's figures: how it predicts what was recorded.
+//! Checks of a fitted model: how it predicts what was recorded.
 
 use std::f64::consts::LN_10;
 
 use crate::diagnosis::compare::least_squares::least_squares;
 use crate::diagnosis::evidence::fit::Fit;
-use crate::diagnosis::findings::{Improvement, Pair, Pictured};
+use crate::diagnosis::findings::{BeforeAfter, Improvement, Pictured};
 use crate::draws::{Draws, median, uncorrelated_p};
 use crate::elpd::leave_one_out;
 use crate::error::{Error, Result};
@@ -16,8 +16,8 @@ use crate::observe::{Event, Quantity, Series};
 use crate::predict::{Bands, predictive_of_all, rmse};
 use crate::seed::Seed;
 
-/// A model to be shown: what is added, how it was fitted, and a seed.
-pub(crate) struct Shown<'a> {
+/// A fitted model to be checked: what is added to the program, and a seed.
+pub(crate) struct FittedModel<'a> {
     pub(crate) mechanisms: Vec<&'a dyn Mechanism>,
     pub(crate) fit: &'a Fit,
     pub(crate) first: Seed,
@@ -26,15 +26,15 @@ pub(crate) struct Shown<'a> {
     pub(crate) rough: bool,
 }
 
-impl Shown<'_> {
+impl FittedModel<'_> {
     pub(crate) fn names(&self) -> Vec<String> {
         self.mechanisms.iter().map(|m| m.name().to_owned()).collect()
     }
 }
 
-/// The figures of one fitted model, over all recordings.
+/// The checks of one fitted model, over all recordings.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Figures {
+pub(crate) struct Checks {
     pub(crate) rmse: f64,
     pub(crate) elpd: f64,
     pub(crate) heldout_rmse: f64,
@@ -54,37 +54,37 @@ pub(crate) struct Figures {
 /// The share of the values that the held-out stretch is predicted from.
 const KNOWN: f64 = 0.7;
 
-/// The figures of a model on the recordings of its events.
-pub(crate) fn show<P: Program>(
+/// Checks a model on the recordings of its events.
+pub(crate) fn checks<P: Program>(
     program: &P,
     events: &[&Event],
-    shown: &Shown<'_>,
-) -> Result<Figures> {
+    fitted: &FittedModel<'_>,
+) -> Result<Checks> {
     let recorded = recordings(events);
     if recorded.is_empty() {
         return Err(Error::input("the event has no recording"));
     }
-    let with = With::new(program, &shown.mechanisms);
+    let with = With::new(program, &fitted.mechanisms);
     let posterior = Posterior::new(&with)?;
-    let draws = &shown.fit.draws;
+    let draws = &fitted.fit.draws;
     let times: Vec<&[f64]> =
         recorded.iter().map(|(_, series)| series.times()).collect();
-    let bands = predictive_of_all(&posterior, draws, &times, shown.first)?;
-    let (_, found) = posterior.collect(Point::Line(&shown.fit.best))?;
+    let bands = predictive_of_all(&posterior, draws, &times, fitted.first)?;
+    let (_, found) = posterior.collect(Point::Line(&fitted.fit.best))?;
     let replayed = replay(&posterior, draws)?;
     let predicted = &replayed.means;
     let values = |(_, series): &(&Event, &Series)| series.values().to_vec();
     let values: Vec<Vec<f64>> = recorded.iter().map(values).collect();
     let places = recorded.iter().zip(predicted);
-    Ok(Figures {
+    Ok(Checks {
         rmse: rmse(&values.concat(), &predicted.concat()),
         elpd: leave_one_out(&posterior, draws).map_or(f64::NAN, |l| l.elpd),
-        heldout_rmse: held_out(program, shown, &values)?,
+        heldout_rmse: held_out(program, fitted, &values)?,
         coverage90: coverage(&bands, &values),
         ljung_box_p: uncorrelated(&found.innovations),
-        least_squares: match shown.rough {
+        least_squares: match fitted.rough {
             true => f64::NAN,
-            false => least_squares(&posterior, shown.fit, &values)?,
+            false => least_squares(&posterior, fitted.fit, &values)?,
         },
         stationary: replayed.stationary,
         places: places
@@ -172,25 +172,25 @@ fn replay(posterior: &Posterior<'_>, draws: &Draws) -> Result<Replayed> {
 /// The RMSE over the last values, of the model fitted to those before.
 fn held_out<P: Program>(
     program: &P,
-    shown: &Shown<'_>,
+    fitted: &FittedModel<'_>,
     values: &[Vec<f64>],
 ) -> Result<f64> {
-    let with = With::new(program, &shown.mechanisms).knowing(KNOWN);
+    let with = With::new(program, &fitted.mechanisms).knowing(KNOWN);
     let posterior = Posterior::new(&with)?;
-    let plain = With::new(program, &shown.mechanisms);
+    let plain = With::new(program, &fitted.mechanisms);
     let whole = Posterior::new(&plain)?;
-    let predicted = if shown.rough {
-        let Some(peak) = climb(&posterior, &shown.fit.best)? else {
+    let predicted = if fitted.rough {
+        let Some(peak) = climb(&posterior, &fitted.fit.best)? else {
             return Ok(f64::NAN);
         };
         whole.collect(Point::Line(peak.line.as_slice()))?.1.predictions
     } else {
         let search = LaplaceMixture::within(SearchSpace {
             prior_starts: 6,
-            starts: vec![shown.fit.best.clone()],
+            starts: vec![fitted.fit.best.clone()],
             grids: Vec::new(),
         });
-        let seed = shown.first.child(1);
+        let seed = fitted.first.child(1);
         let found = search.explore(&posterior, seed, &Quiet)?;
         let Some(draws) = found.draws else { return Ok(f64::NAN) };
         replay(&whole, &draws)?.means
@@ -236,11 +236,13 @@ fn places_of(event: &Event, series: &Series, predicted: &[f64]) -> Vec<f64> {
 pub(crate) fn improvement(
     none: &Fit,
     fit: &Fit,
-    old: &Figures,
-    new: &Figures,
+    old: &Checks,
+    new: &Checks,
 ) -> Improvement {
-    let pair =
-        |of: fn(&Figures) -> f64| Pair { before: of(old), after: of(new) };
+    let pair = |of: fn(&Checks) -> f64| BeforeAfter {
+        before: of(old),
+        after: of(new),
+    };
     let gain = fit.log_evidence - none.log_evidence;
     Improvement {
         log10_bayes_factor: gain / LN_10,
@@ -259,8 +261,8 @@ pub(crate) fn improvement(
 /// Each recording with what both models predict of it.
 pub(crate) fn pictured(
     events: &[&Event],
-    before: &Figures,
-    after: &Figures,
+    before: &Checks,
+    after: &Checks,
     corrected: bool,
 ) -> Vec<Pictured> {
     recordings(events)
