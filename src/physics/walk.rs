@@ -156,7 +156,7 @@ pub fn rest<K: Kind, L: Friction<K>>(
 ///
 /// # Errors
 /// [`Stop::Reject`] where the law has no flow with these values.
-pub(crate) fn rest_changed<K: Kind, L: Friction<K>>(
+pub fn rest_changed<K: Kind, L: Friction<K>>(
     path: &Path<'_>,
     law: &L,
     forces: &Forces<K>,
