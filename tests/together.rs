@@ -9,7 +9,7 @@ use couloir::diagnosis::{
     Fit, Options, Sharing, Together, Verdict, diagnose, fit,
 };
 use couloir::draws::summarise;
-use couloir::infer::{Backend, LaplaceMixture, Quiet, Smc};
+use couloir::infer::{Backend, LaplaceMixture, Quiet, SearchSpace, Smc};
 use couloir::mechanism::catalogue::{Catalogue, FrictionPatch, find};
 use couloir::mechanism::{Mechanism, Role};
 use couloir::model::{Assembled, Model, Point, Posterior, Program, With};
@@ -285,8 +285,11 @@ fn width(
     program: &impl Program,
     mechanism: &dyn couloir::mechanism::Mechanism,
 ) -> (f64, f64) {
-    let peaks = LaplaceMixture { starts: 200, ..LaplaceMixture::default() };
-    let found = fit(program, &[mechanism], &peaks, Seed::new(4)).unwrap();
+    let backend = LaplaceMixture::within(SearchSpace {
+        prior_starts: 200,
+        ..SearchSpace::default()
+    });
+    let found = fit(program, &[mechanism], &backend, Seed::new(4)).unwrap();
     let delta = &summarise(&found.draws)[0];
     assert_eq!(delta.name, "friction-patch.delta_mu");
     (delta.q95 - delta.q05, delta.q50)
