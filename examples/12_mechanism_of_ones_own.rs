@@ -73,7 +73,7 @@ fn main() -> Result<()> {
     // 2. What is looked for: the catalogue, and the gullies.
     let catalogue = Catalogue::default()
         .with(|extent| Box::new(Gullies { extent: *extent }));
-    let options = Options { catalogue, ..Options::default() };
+    let options = Options::default().with_catalogue(catalogue);
     // 3. The inference. The model itself says which law and noise it has.
     let found = diagnose(&model, &model.event, &options, &Quiet)?;
     println!("{}", summary(&found, 80)); // 4. The result

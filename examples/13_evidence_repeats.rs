@@ -36,10 +36,11 @@ fn mean(x: &[f64]) -> f64 {
 /// ln evidence, its stated error, and how far each seed is off, by candidate.
 fn study(name: &str, model: &Assembled, seeds: u64) -> Result<()> {
     let blocks = declared_blocks(model)?;
-    let all = catalogue(&model.event().extent(), &blocks);
+    let extent = model.event().extent();
+    let all = catalogue(&extent, &blocks);
     let begun = Instant::now();
     let found = (1..=seeds)
-        .map(|seed| attribute(model, &all, Seed::new(seed), &Quiet))
+        .map(|seed| attribute(model, &extent, &all, Seed::new(seed), &Quiet))
         .collect::<Result<Vec<_>>>()?;
     let seconds = begun.elapsed().as_secs_f64() / seeds as f64;
     let logs = |i: usize| -> Vec<f64> {

@@ -63,7 +63,7 @@ fn with_gullies(name: &'static str) -> Options {
         Box::new(Gullies { extent: *extent, name })
     };
     let catalogue = Catalogue::default().with(make);
-    Options { catalogue, ..Options::default() }
+    Options::default().with_catalogue(catalogue)
 }
 
 model! {

@@ -57,9 +57,12 @@ fn evidences_repeat_within_three_tenths() {
         let all = cases(20, 8, Mix::One).unwrap();
         let case = all.iter().find(|c| c.truth.effect == effect).unwrap();
         let model = model_of(case);
-        let candidates = catalogue(&model.event().extent(), &model.blocks());
+        let extent = model.event().extent();
+        let candidates = catalogue(&extent, &model.blocks());
         let fits: Vec<_> = (1..=3)
-            .map(|s| attribute(&model, &candidates, Seed::new(s), &Quiet))
+            .map(|s| {
+                attribute(&model, &extent, &candidates, Seed::new(s), &Quiet)
+            })
             .map(|found| found.unwrap().candidates)
             .collect();
         let free = [1, 2, 3].map(|seed| free_force(&model, Seed::new(seed)));
@@ -92,7 +95,8 @@ fn a_bent_tail_is_not_left_out() {
     let patched =
         all.iter().find(|c| c.truth.effect == "friction-patch").unwrap();
     let model = model_of(patched);
-    let mut candidates = catalogue(&model.event().extent(), &model.blocks());
+    let extent = model.event().extent();
+    let mut candidates = catalogue(&extent, &model.blocks());
     candidates.retain(|mechanism| mechanism.name() == "friction-patch");
     let mechanisms = [candidates[0].as_ref()];
     let with = With::new(&model, &mechanisms);
@@ -101,7 +105,8 @@ fn a_bent_tail_is_not_left_out() {
     let known = smc.explore(&posterior, Seed::new(1), &Quiet).unwrap();
     let known = known.evidence.unwrap();
     for seed in 2..=5 {
-        let found = attribute(&model, &candidates, Seed::new(seed), &Quiet);
+        let found =
+            attribute(&model, &extent, &candidates, Seed::new(seed), &Quiet);
         let fit = &found.unwrap().candidates[0];
         let off = fit.log_evidence - known.log;
         // Four standard errors of the difference.
@@ -122,7 +127,8 @@ fn narrow_peaks_are_not_left_out() {
         return;
     }
     let model = every_fifth(&folder);
-    let mut candidates = catalogue(&model.event().extent(), &model.blocks());
+    let extent = model.event().extent();
+    let mut candidates = catalogue(&extent, &model.blocks());
     // Tempering from the prior with 16 000 particles says -48.3 and -49.3 of
     // the last two, and has no answer for the surge (-50.4 and -49.4 with two
     // seeds, the second +- 0.7): that is by 60 000 importance draws.
@@ -130,7 +136,8 @@ fn narrow_peaks_are_not_left_out() {
         [("surge", -50.33), ("entrainment", -48.3), ("friction-patch", -49.3)];
     candidates.retain(|m| known.iter().any(|(name, _)| *name == m.name()));
     for seed in 1..=3 {
-        let found = attribute(&model, &candidates, Seed::new(seed), &Quiet);
+        let found =
+            attribute(&model, &extent, &candidates, Seed::new(seed), &Quiet);
         for (fit, mechanism) in
             found.unwrap().candidates.iter().zip(&candidates)
         {

@@ -16,7 +16,7 @@ use crate::diagnosis::findings::{
     Diagnosis, Judged, ParameterSummary, Verdict,
 };
 use crate::diagnosis::hypothesis::{NONE, UNKNOWN};
-use crate::diagnosis::locate::{FreeForce, free_fit, locate_all};
+use crate::diagnosis::locate::{FreeForce, free_fit};
 use crate::diagnosis::options::Options;
 use crate::diagnosis::tell::paste::corrected;
 use crate::diagnosis::tell::place::{mark, mismatch};
@@ -98,15 +98,13 @@ impl<P: Program> Subject<'_, P> {
         let seed = Seed::new(options.seed);
         let (program, all) = (self.program, &self.all[..]);
         check_odds(&options.odds, all)?;
-        let found = attribute(program, all, seed.child(0), progress)?;
-        progress.begin("locating the mismatch", None);
-        let forces =
-            locate_all(program, &self.extent, &found.none, seed.child(10))?;
+        let seed_of = seed.child(0);
+        let found = attribute(program, &self.extent, all, seed_of, progress)?;
         progress.begin("weighing pairs", None);
         let Decision { judged, verdict, chosen } =
-            self.decide(&found, &forces, options, seed)?;
+            self.decide(&found, options, seed)?;
         progress.begin("showing", None);
-        let free = self.free_form(verdict, &forces, &found.none)?;
+        let free = self.free_form(verdict, &found)?;
         let after = corrected_model(chosen.as_ref(), free.as_ref(), all, seed);
         let compared =
             self.compared(&found.none, after.as_ref(), options, seed)?;
@@ -120,8 +118,8 @@ impl<P: Program> Subject<'_, P> {
             mechanisms: judged,
             ..compared
         };
-        self.write_out(&mut diagnosis, chosen.as_ref(), &forces, options);
-        diagnosis.forces = forces;
+        self.write_out(&mut diagnosis, chosen.as_ref(), &found, options);
+        diagnosis.forces = found.forces;
         diagnosis.seconds = begun.elapsed().as_secs_f64();
         Ok(diagnosis)
     }
@@ -130,12 +128,11 @@ impl<P: Program> Subject<'_, P> {
     fn decide(
         &self,
         found: &Attribution,
-        forces: &[FreeForce],
         options: &Options,
         seed: Seed,
     ) -> Result<Decision> {
         let (program, all) = (self.program, &self.all[..]);
-        let mut judged = judge(found, all, forces, &options.odds);
+        let mut judged = judge(found, all, &options.odds);
         let verdict = verdict(&judged);
         let beforehand = Beforehand::of(&judged, &options.odds);
         let choice =
@@ -153,7 +150,7 @@ impl<P: Program> Subject<'_, P> {
         &self,
         diagnosis: &mut Diagnosis,
         chosen: Option<&Chosen>,
-        forces: &[FreeForce],
+        found: &Attribution,
         options: &Options,
     ) {
         let all = &self.all[..];
@@ -163,7 +160,7 @@ impl<P: Program> Subject<'_, P> {
         let quantity = pictured.first().map_or("", |p| &p.quantity);
         diagnosis.corrected = corrected(&added, options, quantity);
         diagnosis.mismatch =
-            mismatch(verdict, &reaches, forces, &self.events, pictured);
+            mismatch(verdict, &reaches, &found.forces, &self.events, pictured);
         mark(diagnosis, &self.events);
     }
 
@@ -172,14 +169,13 @@ impl<P: Program> Subject<'_, P> {
     fn free_form(
         &self,
         verdict: Verdict,
-        forces: &[FreeForce],
-        none: &Fit,
+        found: &Attribution,
     ) -> Result<Option<(Box<dyn Mechanism>, Fit)>> {
         if verdict != Verdict::Unexplained {
             return Ok(None);
         }
-        let force = most_probable(forces)?;
-        free_fit(self.program, &self.extent, force, none).map(Some)
+        let force = most_probable(&found.forces)?;
+        free_fit(self.program, &self.extent, force, &found.none).map(Some)
     }
 
     /// Before, after, and what both predict.

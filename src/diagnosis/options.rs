@@ -34,6 +34,13 @@ pub struct Options {
 }
 
 impl Options {
+    /// The same with another catalogue of mechanisms, such as one with some of
+    /// the user's own.
+    #[must_use]
+    pub fn with_catalogue(self, catalogue: Catalogue) -> Self {
+        Self { catalogue, ..self }
+    }
+
     /// Those of a model put together from an event file.
     pub fn of(model: &Assembled, seed: u64) -> Self {
         Self {

@@ -68,8 +68,8 @@ impl Schedule {
 impl Default for Schedule {
     fn default() -> Self {
         Self {
-            promising: 80,
-            climbed: 20,
+            promising: 120,
+            climbed: 30,
             negligible: 10.0,
             components: 100,
             learning_draws: 600,

@@ -3,10 +3,8 @@
 //!
 //! Climbs start from given places and from likely draws of the prior. Along
 //! coordinates that may have many modes, or none, places are held: one damped
-//! step of all other coordinates says what each promises, first from where the
-//! place says that they begin, then from the best peak found, where the errors
-//! may be much smaller. The promising ones are climbed further, and the best of
-//! those with all coordinates. Profiles along every coordinate tell where the
+//! step of all other coordinates says what each promises. The promising ones
+//! are climbed further, and the best of those with all coordinates. Profiles along every coordinate tell where the
 //! highest peaks are not as their curvature says.
 
 use nalgebra::DVector;
@@ -32,14 +30,20 @@ pub struct SearchSpace {
     pub grids: Vec<HeldGrid>,
 }
 
+impl SearchSpace {
+    /// Looks in another space too.
+    pub(crate) fn extend(&mut self, other: Self) {
+        self.prior_starts += other.prior_starts;
+        self.starts.extend(other.starts);
+        self.grids.extend(other.grids);
+    }
+}
+
 /// Places along some coordinates, which are held there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeldGrid {
     /// Which coordinates.
     pub held: Vec<usize>,
-    /// Which others begin where a place has them, such as an amplitude of
-    /// either sign; the rest begin there too, and later at the best peak.
-    pub kept: Vec<usize>,
     /// The places.
     pub places: Vec<HeldPlace>,
 }
@@ -69,10 +73,7 @@ pub(super) fn components(
 ) -> Result<Vec<Component>> {
     let mut search = Search::new(posterior, schedule);
     search.climb_from_starts(space, seed)?;
-    search.look(space, None)?;
-    if let Some(best) = search.peaks.first().map(|peak| peak.line.clone()) {
-        search.look(space, Some(&best))?;
-    }
+    search.look(space)?;
     search.components()
 }
 
@@ -88,7 +89,7 @@ pub(super) fn outlook(
 ) -> Result<f64> {
     let mut search = Search::new(posterior, schedule);
     search.climb_from_starts(space, seed)?;
-    search.look(space, None)?;
+    search.look(space)?;
     let logs = search.peaks.iter().filter_map(Peak::log_evidence);
     Ok(super::log_sum_exp(logs.collect::<Vec<_>>().into_iter()))
 }
@@ -150,13 +151,8 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
     }
 
     /// Looks at every held place, climbs on from the promising ones with the
-    /// place held, and from the best with all coordinates. The others begin
-    /// where the place has them, or at `from`.
-    fn look(
-        &mut self,
-        space: &'s SearchSpace,
-        from: Option<&DVector<f64>>,
-    ) -> Result<()> {
+    /// place held, and from the best with all coordinates.
+    fn look(&mut self, space: &'s SearchSpace) -> Result<()> {
         let places = space.grids.iter().flat_map(|grid| {
             grid.places.iter().map(move |place| (grid, place))
         });
@@ -164,7 +160,7 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
         let posterior = self.posterior;
         let found = places
             .into_par_iter()
-            .map(|(grid, place)| glance(posterior, grid, place, from))
+            .map(|(grid, place)| glance(posterior, grid, place))
             .collect::<Result<Vec<_>>>()?;
         let mut found: Vec<Looked<'s>> = found.into_iter().flatten().collect();
         by_height(&mut found);
@@ -229,15 +225,8 @@ fn glance<'s>(
     posterior: &Posterior<'_>,
     grid: &'s HeldGrid,
     place: &'s HeldPlace,
-    from: Option<&DVector<f64>>,
 ) -> Result<Option<Looked<'s>>> {
     let mut line = DVector::from_column_slice(&place.line);
-    if let Some(from) = from {
-        let mut other = from.clone();
-        let own = grid.held.iter().chain(&grid.kept);
-        own.for_each(|&i| other[i] = line[i]);
-        line = other;
-    }
     let landscape = Held { posterior, held: &grid.held };
     let Some(slope) = landscape.slope_at(line.as_slice())? else {
         return Ok(None);

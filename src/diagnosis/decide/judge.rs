@@ -54,7 +54,6 @@ pub(crate) fn check_odds(
 pub(crate) fn judge(
     found: &Attribution,
     catalogue: &[Box<dyn Mechanism>],
-    forces: &[FreeForce],
     odds: &Odds,
 ) -> Vec<Judged> {
     let none = &found.none;
@@ -70,7 +69,7 @@ pub(crate) fn judge(
     for name in names(catalogue) {
         all.push(judged(name, catalogue, &found.candidates));
     }
-    all.push(unknown(forces, none));
+    all.push(unknown(&found.forces, none));
     weigh(&mut all, odds);
     for one in &mut all {
         let gain = one.log_evidence - none.log_evidence;

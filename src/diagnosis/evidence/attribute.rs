@@ -5,9 +5,10 @@ use rayon::prelude::*;
 
 use super::fit::{Fit, Prospect, fit, prospect, spread};
 use super::grids::{edge_grids, even_grids};
+use crate::diagnosis::locate::{FreeForce, locate_all};
 use crate::error::Result;
 use crate::infer::{LaplaceMixture, Precision, Progress, SearchSpace};
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Extent, Mechanism};
 use crate::model::Program;
 use crate::seed::Seed;
 
@@ -16,6 +17,8 @@ use crate::seed::Seed;
 pub struct Attribution {
     /// The model as it is.
     pub none: Fit,
+    /// With a free-form force over distance, over time, and over speed.
+    pub forces: Vec<FreeForce>,
     /// With each mechanism, as the catalogue has them.
     pub candidates: Vec<Fit>,
 }
@@ -41,17 +44,22 @@ const IRRELEVANT: f64 = 11.0;
 /// weights yet.
 const OPEN: f64 = 3.0;
 
-/// Fits the model as it is, and with each mechanism; sharply where it matters.
+/// Fits the model as it is, with a free-form force, and with each mechanism;
+/// sharply where it matters.
 ///
 /// # Errors
 /// An improper prior, or a model that fails.
 pub fn attribute<P: Program>(
     program: &P,
+    extent: &Extent,
     catalogue: &[Box<dyn Mechanism>],
     seed: Seed,
     progress: &dyn Progress,
 ) -> Result<Attribution> {
     let none = fit(program, &[], &LaplaceMixture::default(), seed.child(0))?;
+    progress.begin("locating the mismatch", None);
+    let forces = locate_all(program, extent, &none, seed.child(0).child(9))?;
+    let owns = owns(&none, &forces);
     progress.begin("weighing mechanisms", Some(catalogue.len() as u64));
     let all: Vec<(usize, &dyn Mechanism)> =
         catalogue.iter().map(AsRef::as_ref).enumerate().collect();
@@ -59,7 +67,7 @@ pub fn attribute<P: Program>(
     let prospects = all
         .par_iter()
         .map(|&(i, mechanism)| {
-            let space = single(mechanism, none.own(), of(i).child(0));
+            let space = single(mechanism, &owns, of(i).child(0));
             let backend = LaplaceMixture::within(space);
             let seed = of(i).child(1);
             let found = prospect(program, &[mechanism], backend, seed)
@@ -80,7 +88,18 @@ pub fn attribute<P: Program>(
                 .map_err(|error| error.within(mechanism.name()))
         })
         .collect::<Result<Vec<_>>>()?;
-    Ok(Attribution { none, candidates })
+    Ok(Attribution { none, forces, candidates })
+}
+
+/// Where the model's own parameters begin: at their best with nothing added,
+/// where errors may explain what is missing, and at their best with a force of
+/// free form, where it does.
+fn owns(none: &Fit, forces: &[FreeForce]) -> Vec<Vec<f64>> {
+    let likely = forces
+        .iter()
+        .max_by(|a, b| a.log_bayes_factor.total_cmp(&b.log_bayes_factor));
+    let open = likely.map(FreeForce::middle_of_own);
+    [none.own().to_vec()].into_iter().chain(open).collect()
 }
 
 /// How sharply what has such a prospect is worth estimating, if evidences
@@ -95,9 +114,18 @@ fn precision(prospect: &Prospect, threshold: f64) -> Precision {
 }
 
 /// Where a single mechanism is looked for.
-fn single(mechanism: &dyn Mechanism, own: &[f64], seed: Seed) -> SearchSpace {
-    let around = around(mechanism, None, &[], own, seed);
-    SearchSpace { prior_starts: PRIOR_STARTS, ..around }
+fn single(
+    mechanism: &dyn Mechanism,
+    owns: &[Vec<f64>],
+    seed: Seed,
+) -> SearchSpace {
+    let mut space =
+        SearchSpace { prior_starts: PRIOR_STARTS, ..SearchSpace::default() };
+    for (i, own) in owns.iter().enumerate() {
+        let seed = seed.child(i as u64);
+        space.extend(around(mechanism, None, &[], own, seed));
+    }
+    space
 }
 
 /// Where a mechanism is looked for, all other coordinates beginning at those
@@ -158,8 +186,7 @@ pub fn pair<P: Program>(
             seed.child(1),
         ),
     );
-    space.starts.extend(more.starts);
-    space.grids.extend(more.grids);
+    space.extend(more);
     fit_if_worth(program, &mechanisms, space, hurdle, seed.child(9))
 }
 

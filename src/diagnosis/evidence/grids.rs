@@ -103,7 +103,6 @@ fn even(along: &[Unknown], others: &Others, seed: Seed) -> HeldGrid {
     let free = usize::from(along.len() > 1 && along[0].is_signed());
     let first = others.before.len();
     let held = (first + free..first + along.len()).collect();
-    let kept = (first..first + free).collect();
     let searched = &along[free..];
     let amplitude = vec![0.0; free];
     let places = spread(searched, places(searched.len()), seed)
@@ -113,7 +112,7 @@ fn even(along: &[Unknown], others: &Others, seed: Seed) -> HeldGrid {
             HeldPlace { line, spacing: apart }
         })
         .collect();
-    HeldGrid { held, kept, places }
+    HeldGrid { held, places }
 }
 
 /// Where a stretch or a step has an edge; `None` where there is neither.
@@ -141,8 +140,7 @@ fn narrow(along: &[Unknown], others: &Others) -> Option<HeldGrid> {
         .collect();
     let first = others.before.len();
     let held = (first + 1..first + along.len()).collect();
-    let kept = vec![first];
-    Some(HeldGrid { held, kept, places })
+    Some(HeldGrid { held, places })
 }
 
 /// A place on the line with how far the next ones lie, in each coordinate.

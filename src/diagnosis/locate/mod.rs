@@ -211,6 +211,18 @@ impl FreeForce {
     }
 }
 
+impl FreeForce {
+    /// The medians of the model's own parameters with the force, on the real
+    /// line.
+    pub(super) fn middle_of_own(&self) -> Vec<f64> {
+        let count = self.own.first().map_or(0, Vec::len);
+        let of = |i: usize| -> Vec<f64> {
+            self.own.iter().map(|own| own[i]).collect()
+        };
+        (0..count).map(|i| median(&of(i))).collect()
+    }
+}
+
 /// The median length and the median size.
 fn middle<'z>(places: impl Iterator<Item = &'z [f64]>) -> Process {
     let all: Vec<Process> = places.map(|z| Process::parted(z).0).collect();

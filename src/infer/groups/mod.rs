@@ -150,12 +150,11 @@ impl LaplaceMixture {
         let grids = space.grids.iter().filter_map(|grid| {
             let place = |held| group.places.iter().position(|p| p == held);
             let held = grid.held.iter().map(place).collect::<Option<_>>()?;
-            let kept = grid.kept.iter().map(place).collect::<Option<_>>()?;
             let places = grid.places.iter().map(|place| HeldPlace {
                 line: crossing(&place.line),
                 spacing: place.spacing.clone(),
             });
-            Some(HeldGrid { held, kept, places: places.collect() })
+            Some(HeldGrid { held, places: places.collect() })
         });
         let grids = grids.collect();
         let space = SearchSpace { starts, grids, ..*space };
