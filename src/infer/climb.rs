@@ -125,12 +125,15 @@ pub(crate) struct Climb {
 
 impl Default for Climb {
     fn default() -> Self {
-        Self { steps: 40, longest: 2.0, arrived: 3e-3 }
+        Self { steps: 60, longest: 2.0, arrived: 1e-3 }
     }
 }
 
+/// Damping below which a step promises what there is to gain.
+const UNDAMPED: f64 = 0.1;
+
 /// How often a step is shortened before a climb gives up.
-const TRIES: usize = 8;
+const TRIES: usize = 10;
 
 impl Climb {
     /// The place that a start leads to, with its slope and trace; `None` where
@@ -142,7 +145,7 @@ impl Climb {
         ends_at: impl Fn(&DVector<f64>, f64) -> bool,
     ) -> Result<Option<(DVector<f64>, Slope, L::Trace)>> {
         let (mut line, mut slope, mut trace) = start;
-        let mut lambda = 1e-2;
+        let (mut lambda, mut idle) = (1e-2, 0);
         for _ in 0..self.steps {
             let next =
                 self.step(landscape, (&line, &slope, &trace), &mut lambda)?;
@@ -152,7 +155,9 @@ impl Climb {
             if ends_at(&line, slope.height) {
                 return Ok(None);
             }
-            if gain < self.arrived {
+            // One small gain may be a step that a kink cut short.
+            idle = if gain < self.arrived { idle + 1 } else { 0 };
+            if idle == 2 {
                 break;
             }
         }
@@ -174,7 +179,8 @@ impl Climb {
                 *lambda = (*lambda * 5.0).max(1e-6);
                 continue;
             };
-            if slope.after(&off) - slope.height < self.arrived {
+            let promised = slope.after(&off) - slope.height;
+            if *lambda < UNDAMPED && promised < self.arrived {
                 return Ok(None);
             }
             let next = line + &off;

@@ -31,25 +31,42 @@ const FEW: usize = 4;
 /// How much above the normal approximation, in ln, a place becomes a
 /// component.
 const ABOVE: f64 = 0.4;
+/// How much above the highest peak, in ln, a place is another peak's.
+const HIGHER: f64 = 0.3;
 
-/// The components met on profiles from the highest peaks, along all
-/// coordinates both ways.
+/// What profiles meet.
+#[derive(Default)]
+pub(super) struct Met {
+    /// Where the posterior lies above the normal approximation.
+    pub(super) components: Vec<Component>,
+    /// The highest place, where it is above the peak.
+    pub(super) higher: Option<Peak>,
+}
+
+/// What profiles from the highest peaks meet, along all coordinates both ways.
 ///
 /// # Errors
 /// What no other parameter values would mend.
 pub(super) fn profiles(
     posterior: &Posterior<'_>,
     peaks: &[Peak],
-) -> Result<Vec<Component>> {
+) -> Result<Met> {
     let best = peaks.first().map_or(0.0, |peak| peak.height);
     let high = peaks.iter().filter(|peak| best - peak.height < BELOW);
     let all: Vec<Profile<'_>> =
         high.take(PEAKS).flat_map(Profile::all).collect();
     let met = all
         .into_par_iter()
-        .map(|profile| profile.components(posterior))
+        .map(|profile| profile.walked(posterior))
         .collect::<Result<Vec<_>>>()?;
-    Ok(met.concat())
+    let mut all = Met::default();
+    for one in met {
+        all.components.extend(one.components);
+        let other = one.higher.filter(|peak| peak.height > best + HIGHER);
+        let highest = all.higher.as_ref().map_or(best, |peak| peak.height);
+        all.higher = other.filter(|p| p.height > highest).or(all.higher);
+    }
+    Ok(all)
 }
 
 /// One side of a profile.
@@ -80,11 +97,11 @@ impl<'a> Profile<'a> {
 
     /// Goes on as long as the profile stays high, each stride begun in the
     /// direction of the last.
-    fn components(self, posterior: &Posterior<'_>) -> Result<Vec<Component>> {
+    fn walked(self, posterior: &Posterior<'_>) -> Result<Met> {
         let held = [self.along];
         let spacing = [STRIDE * self.width];
         let (mut at, mut stride) = (self.peak.line.clone(), self.stride);
-        let mut met = Vec::new();
+        let mut met = Met::default();
         for count in 1..=STRIDES {
             let start = &at + &stride;
             let found =
@@ -94,10 +111,15 @@ impl<'a> Profile<'a> {
             let widths = count as f64 * STRIDE;
             let normal = self.peak.height - 0.5 * widths * widths;
             if found.height > normal + ABOVE {
-                met.extend(Component::of_place(&found, &held, &spacing));
+                let component = Component::of_place(&found, &held, &spacing);
+                met.components.extend(component);
             }
             stride = &found.line - &at;
-            at = found.line;
+            at.copy_from(&found.line);
+            let highest = met.higher.as_ref().map_or(f64::MIN, |p| p.height);
+            if found.height > highest {
+                met.higher = Some(found);
+            }
         }
         Ok(met)
     }

@@ -141,9 +141,11 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
         let Some(peak) = climb_unless(self.posterior, start, known)? else {
             return Ok(());
         };
-        if self.peaks.iter().any(|p| p.distance(&peak.line) < ALIKE) {
+        let alike = |p: &Peak| p.distance(&peak.line) < ALIKE;
+        if self.peaks.iter().any(|p| alike(p) && p.height >= peak.height) {
             return Ok(());
         }
+        self.peaks.retain(|p| !alike(p));
         let higher = |other: &Peak| other.height > peak.height;
         let at = self.peaks.partition_point(higher);
         self.peaks.insert(at, peak);
@@ -179,41 +181,22 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
         Ok(())
     }
 
-    fn components(self) -> Result<Vec<Component>> {
-        let profiles = profiles(self.posterior, &self.peaks)?;
-        let of_peaks = self.peaks.iter().filter_map(Component::of_peak);
-        let of_places = self.looked.iter().filter_map(|one| {
-            Component::of_place(&one.peak, &one.grid.held, &one.place.spacing)
-        });
-        let mut all: Vec<Component> =
-            of_peaks.chain(of_places).chain(profiles).collect();
-        all.sort_by(|a, b| b.log.total_cmp(&a.log));
-        let best = all.first().map_or(0.0, |component| component.log);
-        all.retain(|one| best - one.log < self.schedule.negligible);
-        all.truncate(self.schedule.components);
-        Ok(all)
-    }
-}
-
-/// Peaks nearer than this many widths, squared, are one.
-const ALIKE: f64 = 1.0;
-
-fn by_height(found: &mut [Looked<'_>]) {
-    found.sort_by(|a, b| b.peak.height.total_cmp(&a.peak.height));
-}
-
-/// Takes the highest of some places, so many at the most, none next to another
-/// of its grid.
-fn spread<'s>(found: &mut Vec<Looked<'s>>, most: usize) -> Vec<Looked<'s>> {
-    let (mut taken, mut left): (Vec<Looked<'s>>, Vec<Looked<'s>>) =
-        (Vec::new(), Vec::new());
-    for one in found.drain(..) {
-        let full = taken.len() == most;
-        if full || taken.iter().any(|other| one.is_next_to(other)) {
-            left.push(one);
-        } else {
-            taken.push(one);
+    /// Profiles from the highest peaks; where these lead higher, from there.
+    ///
+    /// A density that bends where recorded times pass the borders of pieces
+    /// stops a climb short, and strides along a coordinate pass over that.
+    fn profile(&mut self) -> Result<Vec<Component>> {
+        let mut met = profiles(self.posterior, &self.peaks)?;
+        for _ in 0..HIGHER {
+            let Some(higher) = met.higher else { break };
+            self.climb(higher.line.as_slice())?;
+            met = profiles(self.posterior, &self.peaks)?;
         }
+        Ok(met.components)
+    }
+
+    fn components(mut self) -> Result<Vec<Component>> {
+        let profiles = self.profile()?;
     }
     *found = left;
     taken
