@@ -197,6 +197,42 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
 
     fn components(mut self) -> Result<Vec<Component>> {
         let profiles = self.profile()?;
+        let of_peaks = self.peaks.iter().filter_map(Component::of_peak);
+        let of_places = self.looked.iter().filter_map(|one| {
+            Component::of_place(&one.peak, &one.grid.held, &one.place.spacing)
+        });
+        let mut all: Vec<Component> =
+            of_peaks.chain(of_places).chain(profiles).collect();
+        all.sort_by(|a, b| b.log.total_cmp(&a.log));
+        let best = all.first().map_or(0.0, |component| component.log);
+        all.retain(|one| best - one.log < self.schedule.negligible);
+        all.truncate(self.schedule.components);
+        Ok(all)
+    }
+}
+
+/// How often profiles may lead higher.
+const HIGHER: usize = 8;
+
+/// Peaks nearer than this many widths, squared, are one.
+const ALIKE: f64 = 1.0;
+
+fn by_height(found: &mut [Looked<'_>]) {
+    found.sort_by(|a, b| b.peak.height.total_cmp(&a.peak.height));
+}
+
+/// Takes the highest of some places, so many at the most, none next to another
+/// of its grid.
+fn spread<'s>(found: &mut Vec<Looked<'s>>, most: usize) -> Vec<Looked<'s>> {
+    let (mut taken, mut left): (Vec<Looked<'s>>, Vec<Looked<'s>>) =
+        (Vec::new(), Vec::new());
+    for one in found.drain(..) {
+        let full = taken.len() == most;
+        if full || taken.iter().any(|other| one.is_next_to(other)) {
+            left.push(one);
+        } else {
+            taken.push(one);
+        }
     }
     *found = left;
     taken
