@@ -121,13 +121,24 @@ pub(crate) struct Climb {
     pub(crate) longest: f64,
     /// A gain of the log density below which a climb has arrived.
     pub(crate) arrived: f64,
+    /// How often it may leap where no step climbs.
+    pub(crate) leaps: usize,
 }
 
 impl Default for Climb {
     fn default() -> Self {
-        Self { steps: 60, longest: 2.0, arrived: 1e-3 }
+        Self { steps: 60, longest: 2.0, arrived: 1e-3, leaps: 4 }
     }
 }
+
+/// A place with its slope and trace.
+type Place<L> = (DVector<f64>, Slope, <L as Landscape>::Trace);
+
+/// The damping of a free step.
+const FREE: f64 = 1e-2;
+
+/// How many steps that climb follow a leap.
+const LANDING: usize = 3;
 
 /// Damping below which a step promises what there is to gain.
 const UNDAMPED: f64 = 0.1;
@@ -141,27 +152,61 @@ impl Climb {
     pub(crate) fn ascend<L: Landscape>(
         &self,
         landscape: &L,
-        start: (DVector<f64>, Slope, L::Trace),
+        start: Place<L>,
         ends_at: impl Fn(&DVector<f64>, f64) -> bool,
-    ) -> Result<Option<(DVector<f64>, Slope, L::Trace)>> {
+    ) -> Result<Option<Place<L>>> {
         let (mut line, mut slope, mut trace) = start;
-        let (mut lambda, mut idle) = (1e-2, 0);
+        let (mut lambda, mut leaps) = (FREE, 0);
         for _ in 0..self.steps {
-            let next =
-                self.step(landscape, (&line, &slope, &trace), &mut lambda)?;
+            let here = (&line, &slope, &trace);
+            let next = self.step(landscape, here, &mut lambda)?;
+            let gains = |(_, next, _): &Place<L>| {
+                next.height - slope.height > self.arrived
+            };
+            let next = match next.filter(gains) {
+                None if leaps < self.leaps => {
+                    leaps += 1;
+                    lambda = FREE;
+                    self.leap(landscape, here)?
+                }
+                next => next,
+            };
             let Some(next) = next else { break };
-            let gain = next.1.height - slope.height;
             (line, slope, trace) = next;
             if ends_at(&line, slope.height) {
                 return Ok(None);
             }
-            // One small gain may be a step that a kink cut short.
-            idle = if gain < self.arrived { idle + 1 } else { 0 };
-            if idle == 2 {
-                break;
-            }
         }
         Ok(Some((line, slope, trace)))
+    }
+
+    /// Where a free step and a few that climb lead, if that is higher: over a
+    /// kink of the density, before which every step that climbs is short.
+    fn leap<L: Landscape>(
+        &self,
+        landscape: &L,
+        (line, slope, trace): (&DVector<f64>, &Slope, &L::Trace),
+    ) -> Result<Option<Place<L>>> {
+        let free = slope.step(landscape.held(), FREE, self.longest);
+        let Some(off) =
+            free.filter(|off| slope.after(off) - slope.height > self.arrived)
+        else {
+            return Ok(None);
+        };
+        let next = line + &off;
+        let Some((found, other)) = landscape.slope(&next, &off, trace)? else {
+            return Ok(None);
+        };
+        let (mut at, mut lambda) = ((next, found, other), FREE);
+        for _ in 0..LANDING {
+            let here = (&at.0, &at.1, &at.2);
+            match self.step(landscape, here, &mut lambda)? {
+                Some(next) => at = next,
+                None => break,
+            }
+        }
+        let higher = at.1.height - slope.height > self.arrived;
+        Ok(higher.then_some(at))
     }
 
     /// A step that climbs, with ever more damping until one does; `None` where
@@ -171,7 +216,7 @@ impl Climb {
         landscape: &L,
         (line, slope, trace): (&DVector<f64>, &Slope, &L::Trace),
         lambda: &mut f64,
-    ) -> Result<Option<(DVector<f64>, Slope, L::Trace)>> {
+    ) -> Result<Option<Place<L>>> {
         for _ in 0..TRIES {
             let Some(off) =
                 slope.step(landscape.held(), *lambda, self.longest)
@@ -268,7 +313,7 @@ pub(super) fn climb_holding(
 ) -> Result<Option<Peak>> {
     let landscape = Held { posterior, held };
     let Some(slope) = landscape.slope_at(start)? else { return Ok(None) };
-    let climb = Climb { steps, ..Climb::default() };
+    let climb = Climb { steps, leaps: 2, ..Climb::default() };
     let start = (DVector::from_column_slice(start), slope, ());
     let found = climb.ascend(&landscape, start, |_, _| false)?;
     Ok(found.map(Peak::of))

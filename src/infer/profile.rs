@@ -19,8 +19,8 @@ use crate::model::Posterior;
 
 /// Of how many peaks profiles are made at the most, and how far below the
 /// highest they may be, in ln.
-const PEAKS: usize = 2;
-const BELOW: f64 = 2.0;
+const PEAKS: usize = 5;
+const BELOW: f64 = 5.0;
 /// A stride, in widths of the peak.
 const STRIDE: f64 = 1.3;
 /// How far down a profile goes, in ln.

@@ -68,8 +68,8 @@ impl Schedule {
 impl Default for Schedule {
     fn default() -> Self {
         Self {
-            promising: 120,
-            climbed: 30,
+            promising: 200,
+            climbed: 120,
             negligible: 10.0,
             components: 100,
             learning_draws: 600,

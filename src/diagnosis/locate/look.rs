@@ -25,7 +25,8 @@ const NEGLIGIBLE: f64 = 10.0;
 /// Looks nearer than this many widths, squared, are one.
 const ALIKE: f64 = 0.1;
 /// A climb of the own parameters.
-const CLIMB: Climb = Climb { steps: 10, longest: 1.0, arrived: 0.02 };
+const CLIMB: Climb =
+    Climb { steps: 10, longest: 1.0, arrived: 0.02, leaps: 0 };
 /// The most tangents to where the force is best, and a gain of the log density
 /// below which another one is not worth it.
 const TANGENTS: usize = 4;

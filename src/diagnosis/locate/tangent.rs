@@ -132,10 +132,10 @@ impl Tangent {
             - 0.5 * bend
             - 0.5 * waves.mean.norm_squared()
             - half_log_det(&waves.precision);
-        let across = factor.tr_mul(&self.across);
+        let across = factor.transpose() * &self.across;
         let follows = waves.precision.solve(&across);
         let gradient = &self.pulls.1 - self.across.tr_mul(&off);
-        let precision = &self.of_own - across.tr_mul(&follows);
+        let precision = &self.of_own - across.transpose() * &follows;
         Slope { height, gradient, precision }
     }
 }
