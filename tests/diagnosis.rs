@@ -51,8 +51,9 @@ fn nothing_is_missing_once_the_drag_is_there_but_correlation() {
     let found = diagnosed(file, None);
     let total: f64 = found.mechanisms.iter().map(|m| m.probability).sum();
     assert!((total - 1.0).abs() < 1e-9, "{total}");
-    let adequate = found.verdict == Verdict::Adequate;
-    assert_eq!(adequate, found.mismatch.is_empty());
+    let nothing = [Verdict::Adequate, Verdict::Errors];
+    assert!(nothing.contains(&found.verdict), "{:?}", found.verdict);
+    assert!(found.mismatch.is_empty(), "{:?}", found.mismatch);
     assert!(found.mechanisms.iter().all(|m| m.name != "turbulent-drag"));
 }
 
