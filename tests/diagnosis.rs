@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use couloir::diagnosis::{Diagnosis, Options, Verdict, diagnose};
@@ -50,8 +51,9 @@ fn nothing_is_missing_once_the_drag_is_there_but_correlation() {
     let found = diagnosed(file, None);
     let total: f64 = found.mechanisms.iter().map(|m| m.probability).sum();
     assert!((total - 1.0).abs() < 1e-9, "{total}");
-    let adequate = found.verdict == Verdict::Adequate;
-    assert_eq!(adequate, found.mismatch.is_empty());
+    let nothing = [Verdict::Adequate, Verdict::Errors];
+    assert!(nothing.contains(&found.verdict), "{:?}", found.verdict);
+    assert!(found.mismatch.is_empty(), "{:?}", found.mismatch);
     assert!(found.mechanisms.iter().all(|m| m.name != "turbulent-drag"));
 }
 
@@ -61,13 +63,15 @@ fn recordings() -> Option<PathBuf> {
         .join("../shared/recordings/falling-balls");
     let at_hand = beside.is_dir();
     if !at_hand {
-        println!("no recordings at {}: not run", beside.display());
+        // Printed macros are held back for tests that pass; this is not.
+        let said = format!("not run: there is no {}\n", beside.display());
+        std::io::stderr().write_all(said.as_bytes()).unwrap();
     }
     at_hand.then_some(beside)
 }
 
 #[test]
-fn balls_that_fall_show_the_drag_of_the_air_where_it_is() {
+fn balls_that_fall_show_the_drag_of_the_air_where_it_is_if_at_hand() {
     let Some(folder) = recordings() else { return };
     let laws = Laws::default();
     let load = |ball: &str| io::load(&folder.join(ball), &laws).unwrap();

@@ -4,6 +4,7 @@
 #![allow(clippy::print_stderr, reason = "a skipped test says so")]
 
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use couloir::context::Context;
@@ -34,12 +35,14 @@ fn shared() -> Option<PathBuf> {
     if folder.is_dir() {
         return Some(folder);
     }
-    eprintln!("skipped: there is no {}", folder.display());
+    // Printed macros are held back for tests that pass; this is not.
+    let said = format!("not run: there is no {}\n", folder.display());
+    std::io::stderr().write_all(said.as_bytes()).unwrap();
     None
 }
 
 #[test]
-fn every_shared_event_loads() {
+fn every_shared_event_loads_if_at_hand() {
     let Some(shared) = shared() else { return };
     let mut folders = Vec::new();
     event_folders(&shared, &mut folders);

@@ -18,7 +18,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     work: Work,
     /// Backend: mh, random-walk, nuts (where built with it), smc, importance,
-    /// bridge or reciprocal
+    /// laplace-mixture, bridge or reciprocal
     #[arg(long, default_value = "mh", value_parser = backend_name)]
     backend: String,
     #[command(flatten)]

@@ -1,6 +1,8 @@
 //! The layers: each module uses lower ones only. ARCHITECTURE.md says which
 //! is which; this reads the table there and the code in `src/`.
 
+mod circles;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
