@@ -1,9 +1,13 @@
 //! How well evidences repeat, and whether stated errors hold: every candidate
 //! of an event weighed with several seeds. Arguments: how many seeds, values a
-//! second, and event folders; without any, two seeds of the built-in event.
-use std::path::Path;
+//! second, and event folders or cases of the challenge, such as
+//! `challenge:9931:3` for the third by seed 9931 of those with one recording;
+//! without any, two seeds of the built-in event.
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use couloir::challenge::{Mix, cases};
 use couloir::diagnosis::attribute;
 use couloir::io;
 use couloir::mechanism::catalogue::catalogue;
@@ -29,6 +33,37 @@ fn model(file: io::EventFile, rate: f64) -> Result<Assembled> {
     Assembled::new(event, file.friction, file.noise, &file.priors)
 }
 
+/// How many effects are drawn: cases are numbered through them, as in the
+/// whole challenge.
+const EFFECTS: usize = 200;
+
+/// A case of the challenge by the seed and the number, counted from 1, in
+/// `seed:number`.
+fn challenge_case(text: &str, laws: &Laws) -> Result<io::EventFile> {
+    let wrong = || {
+        Error::input(format!(
+            "challenge:{text}: expected a seed and a case's number from 1 on, \
+             such as challenge:9931:3"
+        ))
+    };
+    let (seed, number) = text.split_once(':').ok_or_else(wrong)?;
+    let seed = seed.parse().map_err(|_| wrong())?;
+    let number: usize = number.parse().map_err(|_| wrong())?;
+    let all = cases(EFFECTS, seed, Mix::One)?;
+    let index = number.checked_sub(1).ok_or_else(wrong)?;
+    let case = all.get(index).ok_or_else(wrong)?;
+    println!("\n{} of seed {seed}: {}", case.name, case.truth.effect);
+    let files = &case.recordings[0].files;
+    let open = |name: &str| {
+        let file = files.iter().find(|(file, _)| *file == name);
+        let (_, text) = file.ok_or_else(wrong)?;
+        Ok((Cursor::new(text.clone()), PathBuf::from(name)))
+    };
+    let event = files.iter().find(|(file, _)| *file == "event.toml");
+    let (name, event) = event.ok_or_else(wrong)?;
+    io::parse_event(event, Path::new(name), open, laws)
+}
+
 fn mean(x: &[f64]) -> f64 {
     x.iter().sum::<f64>() / x.len() as f64
 }
@@ -40,7 +75,9 @@ fn study(name: &str, model: &Assembled, seeds: u64) -> Result<()> {
     let all = catalogue(&extent, &blocks);
     let begun = Instant::now();
     let found = (1..=seeds)
-        .map(|seed| attribute(model, &extent, &all, Seed::new(seed), &Quiet))
+        .map(|seed| {
+            attribute(model, Some(&extent), &all, Seed::new(seed), &Quiet)
+        })
         .collect::<Result<Vec<_>>>()?;
     let seconds = begun.elapsed().as_secs_f64() / seeds as f64;
     let logs = |i: usize| -> Vec<f64> {
@@ -92,7 +129,10 @@ fn main() -> Result<()> {
         return study("coast-down", &model(file, rate)?, seeds);
     }
     for folder in &arguments[2..] {
-        let file = io::load(Path::new(folder), &laws)?;
+        let file = match folder.strip_prefix("challenge:") {
+            Some(case) => challenge_case(case, &laws)?,
+            None => io::load(Path::new(folder), &laws)?,
+        };
         let name = file.event.name().to_owned();
         study(&name, &model(file, rate)?, seeds)?;
     }

@@ -73,7 +73,8 @@
 //! | [`mod@model`] | one run of a model, asked in different ways |
 //! | [`infer`], [`predict`] | backends; predictions |
 //! | [`elpd`], [`io`], [`report`] | prediction of what was left out; event files in; tables, pictures and pages out |
-//! | [`calibrate`], [`diagnosis`], [`sbc`] | a whole calibration; what a model lacks; whether inference can be trusted |
+//! | [`calibrate`], [`diagnosis`] | a whole calibration; what a model lacks |
+//! | [`sbc`] | whether inference can be trusted |
 //! | [`mod@reproduce`], [`challenge`] | the paper's study, computed again; hidden effects, made without the engine, and the score |
 //! | [`cli`] | the command: nothing below it prints |
 //!

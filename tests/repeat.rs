@@ -61,7 +61,13 @@ fn evidences_repeat_within_three_tenths() {
         let candidates = catalogue(&extent, &model.blocks());
         let fits: Vec<_> = (1..=3)
             .map(|s| {
-                attribute(&model, &extent, &candidates, Seed::new(s), &Quiet)
+                attribute(
+                    &model,
+                    Some(&extent),
+                    &candidates,
+                    Seed::new(s),
+                    &Quiet,
+                )
             })
             .map(|found| found.unwrap().candidates)
             .collect();
@@ -105,8 +111,13 @@ fn a_bent_tail_is_not_left_out() {
     let known = smc.explore(&posterior, Seed::new(1), &Quiet).unwrap();
     let known = known.evidence.unwrap();
     for seed in 2..=5 {
-        let found =
-            attribute(&model, &extent, &candidates, Seed::new(seed), &Quiet);
+        let found = attribute(
+            &model,
+            Some(&extent),
+            &candidates,
+            Seed::new(seed),
+            &Quiet,
+        );
         let fit = &found.unwrap().candidates[0];
         let off = fit.log_evidence - known.log;
         // Four standard errors of the difference.
@@ -136,8 +147,13 @@ fn narrow_peaks_are_not_left_out() {
         [("surge", -50.33), ("entrainment", -48.3), ("friction-patch", -49.3)];
     candidates.retain(|m| known.iter().any(|(name, _)| *name == m.name()));
     for seed in 1..=3 {
-        let found =
-            attribute(&model, &extent, &candidates, Seed::new(seed), &Quiet);
+        let found = attribute(
+            &model,
+            Some(&extent),
+            &candidates,
+            Seed::new(seed),
+            &Quiet,
+        );
         for (fit, mechanism) in
             found.unwrap().candidates.iter().zip(&candidates)
         {

@@ -99,7 +99,8 @@ impl<P: Program> Subject<'_, P> {
         let (program, all) = (self.program, &self.all[..]);
         check_odds(&options.odds, all)?;
         let seed_of = seed.child(0);
-        let found = attribute(program, &self.extent, all, seed_of, progress)?;
+        let found =
+            attribute(program, Some(&self.extent), all, seed_of, progress)?;
         progress.begin("weighing pairs", None);
         let Decision { judged, verdict, chosen } =
             self.decide(&found, options, seed)?;

@@ -18,7 +18,7 @@ mod tests;
 mod together;
 
 pub use crate::model::Together;
-pub use decide::judge::Odds;
+pub use decide::judge::{Odds, judge, prior_probabilities};
 pub use diagnose::{diagnose, diagnose_together};
 pub use evidence::attribute::{Attribution, attribute, pair};
 pub use evidence::fit::{Fit, fit};

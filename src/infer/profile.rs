@@ -14,13 +14,10 @@ use rayon::prelude::*;
 
 use super::climb::{Peak, climb_holding};
 use super::proposal::Component;
+use super::schedule::Schedule;
 use crate::error::Result;
 use crate::model::Posterior;
 
-/// Of how many peaks profiles are made at the most, and how far below the
-/// highest they may be, in ln.
-const PEAKS: usize = 5;
-const BELOW: f64 = 5.0;
 /// A stride, in widths of the peak.
 const STRIDE: f64 = 1.3;
 /// How far down a profile goes, in ln.
@@ -50,11 +47,13 @@ pub(super) struct Met {
 pub(super) fn profiles(
     posterior: &Posterior<'_>,
     peaks: &[Peak],
+    schedule: &Schedule,
 ) -> Result<Met> {
     let best = peaks.first().map_or(0.0, |peak| peak.height);
-    let high = peaks.iter().filter(|peak| best - peak.height < BELOW);
+    let near = |peak: &&Peak| best - peak.height < schedule.profiled_below;
+    let high = peaks.iter().filter(near);
     let all: Vec<Profile<'_>> =
-        high.take(PEAKS).flat_map(Profile::all).collect();
+        high.take(schedule.profiled).flat_map(Profile::all).collect();
     let met = all
         .into_par_iter()
         .map(|profile| profile.walked(posterior))

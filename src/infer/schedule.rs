@@ -12,6 +12,10 @@ pub(crate) struct Schedule {
     /// From how many of these a climb of all coordinates starts; most end soon
     /// at a peak that is known.
     pub(crate) climbed: usize,
+    /// From how many of the highest peaks profiles are made, and how far below
+    /// the highest these may be, in ln.
+    pub(crate) profiled: usize,
+    pub(crate) profiled_below: f64,
     /// Components that hold so much less than the best, in ln, are left to the
     /// prior's share: e^-10 of the posterior.
     pub(crate) negligible: f64,
@@ -52,6 +56,20 @@ pub(crate) struct Schedule {
 }
 
 impl Schedule {
+    /// A first look, which says whether a thorough one is worth it.
+    pub(crate) fn first_look() -> Self {
+        Self {
+            promising: 40,
+            climbed: 12,
+            profiled: 1,
+            components: 60,
+            learning_draws: 400,
+            rounds: 3,
+            moved: 100,
+            ..Self::default()
+        }
+    }
+
     /// Whether fresh draws of such an effective share and tail index make an
     /// estimate: half of what judging asks for, since they were not chosen.
     pub(crate) fn does(&self, (share, tail): (f64, f64)) -> bool {
@@ -70,6 +88,8 @@ impl Default for Schedule {
         Self {
             promising: 200,
             climbed: 120,
+            profiled: 4,
+            profiled_below: 4.0,
             negligible: 10.0,
             components: 100,
             learning_draws: 600,

@@ -186,11 +186,11 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
     /// A density that bends where recorded times pass the borders of pieces
     /// stops a climb short, and strides along a coordinate pass over that.
     fn profile(&mut self) -> Result<Vec<Component>> {
-        let mut met = profiles(self.posterior, &self.peaks)?;
+        let mut met = profiles(self.posterior, &self.peaks, self.schedule)?;
         for _ in 0..HIGHER {
             let Some(higher) = met.higher else { break };
             self.climb(higher.line.as_slice())?;
-            met = profiles(self.posterior, &self.peaks)?;
+            met = profiles(self.posterior, &self.peaks, self.schedule)?;
         }
         Ok(met.components)
     }

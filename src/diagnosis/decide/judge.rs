@@ -49,9 +49,9 @@ pub(crate) fn check_odds(
     }
 }
 
-/// Judges the model as it was, every mechanism and the free-form force; most
-/// probable first.
-pub(crate) fn judge(
+/// Judges the model as it was, every mechanism and the free-form force, where
+/// it was inferred along any axis; most probable first.
+pub fn judge(
     found: &Attribution,
     catalogue: &[Box<dyn Mechanism>],
     odds: &Odds,
@@ -69,7 +69,9 @@ pub(crate) fn judge(
     for name in names(catalogue) {
         all.push(judged(name, catalogue, &found.candidates));
     }
-    all.push(unknown(&found.forces, none));
+    if !found.forces.is_empty() {
+        all.push(unknown(&found.forces, none));
+    }
     weigh(&mut all, odds);
     for one in &mut all {
         let gain = one.log_evidence - none.log_evidence;
@@ -151,9 +153,16 @@ pub(crate) struct Beforehand<'a> {
 
 impl<'a> Beforehand<'a> {
     pub(crate) fn of(all: &[Judged], odds: &'a Odds) -> Self {
+        Self::among(all.iter().map(|m| m.name.as_str()), odds)
+    }
+
+    fn among<'n>(
+        names: impl Iterator<Item = &'n str>,
+        odds: &'a Odds,
+    ) -> Self {
         let mut beforehand = Self { odds, others: 0.0 };
-        let others = all.iter().filter(|m| m.name != NONE);
-        beforehand.others = others.map(|m| beforehand.odds_of(&m.name)).sum();
+        let others = names.filter(|name| *name != NONE);
+        beforehand.others = others.map(|name| beforehand.odds_of(name)).sum();
         beforehand
     }
 
@@ -173,6 +182,22 @@ impl<'a> Beforehand<'a> {
     pub(crate) fn price(&self, name: &str) -> f64 {
         self.log(NONE) - self.log(name)
     }
+}
+
+/// The probability of each name before the recording is seen: that of the
+/// model as it was, then those of a catalogue's names, each once.
+pub fn prior_probabilities(
+    catalogue: &[Box<dyn Mechanism>],
+    odds: &Odds,
+) -> Vec<(String, f64)> {
+    let all = [&[NONE], &names(catalogue)[..]].concat();
+    let beforehand = Beforehand::among(all.iter().copied(), odds);
+    let logs: Vec<f64> = all.iter().map(|name| beforehand.log(name)).collect();
+    let total = log_sum_exp(logs.iter().copied());
+    all.into_iter()
+        .zip(logs)
+        .map(|(name, log)| (name.to_owned(), (log - total).exp()))
+        .collect()
 }
 
 fn weigh(all: &mut [Judged], odds: &Odds) {

@@ -3,7 +3,9 @@
 
 use rayon::prelude::*;
 
-use super::fit::{Fit, Prospect, fit, prospect, spread};
+use super::fit::{
+    Fit, Prospect, UNSEEN, fit, prospect, prospect_above, spread,
+};
 use super::grids::{edge_grids, even_grids};
 use crate::diagnosis::locate::{FreeForce, locate_all};
 use crate::error::Result;
@@ -45,35 +47,54 @@ const IRRELEVANT: f64 = 11.0;
 const OPEN: f64 = 3.0;
 
 /// Fits the model as it is, with a free-form force, and with each mechanism;
-/// sharply where it matters.
+/// sharply where it matters. Without an extent no free-form force is weighed.
 ///
 /// # Errors
 /// An improper prior, or a model that fails.
 pub fn attribute<P: Program>(
     program: &P,
-    extent: &Extent,
+    extent: Option<&Extent>,
     catalogue: &[Box<dyn Mechanism>],
     seed: Seed,
     progress: &dyn Progress,
 ) -> Result<Attribution> {
     let none = fit(program, &[], &LaplaceMixture::default(), seed.child(0))?;
     progress.begin("locating the mismatch", None);
-    let forces = locate_all(program, extent, &none, seed.child(0).child(9))?;
+    let seed_of = seed.child(0).child(9);
+    let forces = match extent {
+        Some(extent) => locate_all(program, extent, &none, seed_of)?,
+        None => Vec::new(),
+    };
     let owns = owns(&none, &forces);
     progress.begin("weighing mechanisms", Some(catalogue.len() as u64));
     let all: Vec<(usize, &dyn Mechanism)> =
         catalogue.iter().map(AsRef::as_ref).enumerate().collect();
     let of = |i: usize| seed.child(1 + i as u64);
-    let prospects = all
+    let backend = |i: usize, mechanism: &dyn Mechanism| {
+        LaplaceMixture::within(single(mechanism, &owns, of(i).child(0)))
+    };
+    let first = all
         .par_iter()
         .map(|&(i, mechanism)| {
-            let space = single(mechanism, &owns, of(i).child(0));
-            let backend = LaplaceMixture::within(space);
+            let backend = backend(i, mechanism).at_first();
             let seed = of(i).child(1);
             let found = prospect(program, &[mechanism], backend, seed)
                 .map_err(|error| error.within(mechanism.name()));
             progress.advance(1);
             found
+        })
+        .collect::<Result<Vec<Prospect>>>()?;
+    let logs = first.iter().map(Prospect::log);
+    let best = logs.fold(none.log_evidence, f64::max);
+    let prospects = all
+        .par_iter()
+        .zip(first)
+        .map(|(&(i, mechanism), first)| {
+            if first.log() + UNSEEN < best - IRRELEVANT {
+                return Ok(first);
+            }
+            let seed = of(i).child(3);
+            prospect(program, &[mechanism], backend(i, mechanism), seed)
         })
         .collect::<Result<Vec<Prospect>>>()?;
     let logs = prospects.iter().map(Prospect::log);
@@ -218,8 +239,10 @@ fn fit_if_worth<P: Program>(
     seed: Seed,
 ) -> Result<Option<Fit>> {
     let backend = LaplaceMixture::within(space);
-    let prospect = prospect(program, mechanisms, backend, seed.child(0))?;
-    match precision(&prospect, hurdle - SHORT) {
+    let (least, seed_of) = (hurdle - SHORT, seed.child(0));
+    let prospect =
+        prospect_above(program, mechanisms, backend, least, seed_of)?;
+    match precision(&prospect, least) {
         Precision::Rough => Ok(None),
         sharp => {
             prospect.fit(program, mechanisms, sharp, seed.child(1)).map(Some)

@@ -87,6 +87,30 @@ impl Prospect {
     }
 }
 
+/// Looks at a program with mechanisms for the first time, and again thoroughly
+/// if what that promises comes near a threshold.
+///
+/// # Errors
+/// An improper prior, or a model that fails.
+pub(crate) fn prospect_above<P: Program>(
+    program: &P,
+    mechanisms: &[&dyn Mechanism],
+    backend: LaplaceMixture,
+    threshold: f64,
+    seed: Seed,
+) -> Result<Prospect> {
+    let first = backend.at_first();
+    let found = prospect(program, mechanisms, first, seed.child(0))?;
+    if found.log + UNSEEN < threshold {
+        return Ok(found);
+    }
+    prospect(program, mechanisms, backend, seed.child(1))
+}
+
+/// How much more, in ln, a thorough look may find than a first one: 5 was the
+/// most that a mode passed over had.
+pub(crate) const UNSEEN: f64 = 6.0;
+
 /// Searches a program with mechanisms, and learns where it lies.
 ///
 /// # Errors

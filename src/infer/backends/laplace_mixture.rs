@@ -60,6 +60,12 @@ impl LaplaceMixture {
         Self { space, ..Self::default() }
     }
 
+    /// The same at a first look, which says whether more is worth it.
+    pub(crate) fn at_first(&self) -> Self {
+        let schedule = Schedule::first_look();
+        Self { space: self.space.clone(), schedule }
+    }
+
     /// Searches and learns: a proposal that learns no more.
     ///
     /// # Errors

@@ -264,6 +264,7 @@ mod tests {
     use statrs::distribution::{Continuous, StudentsT};
 
     use super::*;
+    use crate::seed::Seed;
 
     #[test]
     fn one_component_is_a_t_distribution_however_far() {
@@ -281,5 +282,43 @@ mod tests {
             let off = mixture.log_density(&[z]) - known.ln_pdf(z);
             assert!(off.abs() < 1e-8, "{z}: {off}");
         }
+    }
+
+    /// Two components, of a quarter and three quarters of the weight.
+    fn two() -> Mixture {
+        let part = |weight, mean, variance| {
+            let mean = DVector::from_element(1, mean);
+            (weight, mean, DMatrix::from_element(1, 1, variance))
+        };
+        let parts = [part(1.0, -4.0, 0.5), part(3.0, 3.0, 2.0)];
+        Mixture::of(parts.into_iter()).unwrap()
+    }
+
+    /// The density's integral above 0, to the right of the first component,
+    /// by the midpoint rule in z = tan(x), which takes in the tails.
+    fn above_zero(mixture: &Mixture) -> f64 {
+        const STEPS: usize = 20_000;
+        let step = std::f64::consts::FRAC_PI_2 / STEPS as f64;
+        let at = |i: usize| {
+            let z = ((i as f64 + 0.5) * step).tan();
+            mixture.log_density(&[z]).exp() * (1.0 + z * z) * step
+        };
+        (0..STEPS).map(at).sum()
+    }
+
+    #[test]
+    fn the_density_is_that_of_the_draws_in_every_component() {
+        const DRAWS: usize = 40_000;
+        let mixture = two();
+        let mut rng = Seed::new(3).rng();
+        let above = (0..DRAWS).filter(|_| mixture.draw(&mut rng)[0] > 0.0);
+        let share = above.count() as f64 / DRAWS as f64;
+        let se = (share * (1.0 - share) / DRAWS as f64).sqrt();
+        let z = |mixture: &Mixture| (above_zero(mixture) - share) / se;
+        assert!(z(&mixture).abs() < 4.0, "{}", z(&mixture));
+        // A factor of one component's density is seen.
+        let mut planted = two();
+        planted.components[1].constant *= 1.1;
+        assert!(z(&planted) > 4.0, "{}", z(&planted));
     }
 }

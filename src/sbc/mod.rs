@@ -5,7 +5,15 @@
 //! posterior of that recording: the true value's rank among the posterior
 //! draws is uniform if model and backend are right (Talts, Betancourt,
 //! Simpson, Vehtari, Gelman 2018). Whatever is wrong with either shows as
-//! ranks that are not.
+//! ranks that are not. The same is asked of the choice between models:
+//! [`choices`] holds posterior probabilities against the models that were
+//! true.
+
+mod choices;
+mod models;
+
+pub use choices::{Choice, Choices, Held};
+pub use models::{Remaking, choices};
 
 use rayon::prelude::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
