@@ -12,7 +12,7 @@
 //! slope without end, a number that is none. It goes on from there as every
 //! other motion does.
 
-use super::elementary::{self, ATANHC, COSH, EXPC, SINHC};
+use super::eight::{EIGHT, Eight, atanhc, expc, tanhc};
 use super::exact::{FAR, Pace};
 use super::friction::{Friction, Rate, Varies};
 use super::track::Piece;
@@ -20,14 +20,13 @@ use super::walk::{
     Path, Release, Standing, State, first_piece, sample, sample_from, site,
 };
 use crate::error::Stop;
-use crate::scalar::{Plain, Real, polynomial};
+use crate::scalar::{Plain, Real};
 
-/// How many motions are solved side by side: two vectors of AVX2, one of
-/// AVX-512.
-const LANES: usize = 8;
+/// How many motions are solved side by side.
+const LANES: usize = EIGHT;
 
 /// One number for each lane.
-type Lanes = [f64; LANES];
+type Lanes = Eight;
 
 /// After how many pieces it is asked whether all lanes have seen their last
 /// time.
@@ -354,77 +353,6 @@ fn speeds_after(a: &Lanes, c: &Lanes, u: &Lanes, t: &Lanes) -> Lanes {
     speeds
 }
 
-/// Whether all lanes lie nearer to 0 than a bound.
-#[inline(always)]
-fn near(x: &Lanes, bound: f64) -> bool {
-    let mut near = true;
-    for x in x {
-        near &= x.abs() < bound;
-    }
-    near
-}
-
-#[inline(always)]
-fn series(x: &Lanes, coefficients: &[f64]) -> Lanes {
-    x.map(|x| polynomial(x, coefficients))
-}
-
-/// `elementary::expc` on each lane; beyond its series by doubling, as
-/// (1 - exp(-2y))/(2y) = f (1 - y f/2) for f = (1 - exp(-y))/y.
-#[inline(always)]
-fn expc(x: &Lanes) -> Lanes {
-    if near(x, 0.04) {
-        series(x, &EXPC[..8])
-    } else if near(x, 0.1) {
-        series(x, &EXPC)
-    } else {
-        doubled_expc(x)
-    }
-}
-
-#[inline(never)]
-fn doubled_expc(x: &Lanes) -> Lanes {
-    let bound = x.iter().fold(0.0, |a: f64, x| a.max(x.abs())).min(FAR);
-    let doublings = (bound / 0.1).log2().ceil().max(0.0) as i32;
-    let mut y = x.map(|x| x * 0.5_f64.powi(doublings));
-    let mut f = series(&y, &EXPC);
-    for _ in 0..doublings {
-        for l in 0..LANES {
-            f[l] *= 1.0 - 0.5 * y[l] * f[l];
-            y[l] *= 2.0;
-        }
-    }
-    f
-}
-
-/// `elementary::atanhc` on each lane.
-#[inline(always)]
-fn atanhc(z: &Lanes) -> Lanes {
-    if near(z, 3e-3) {
-        series(z, &ATANHC[..6])
-    } else if near(z, 0.05) {
-        series(z, &ATANHC)
-    } else {
-        one_by_one(z, elementary::atanhc)
-    }
-}
-
-/// `elementary::tanhc` on each lane.
-#[inline(always)]
-fn tanhc(z: &Lanes) -> Lanes {
-    if near(z, 0.05) {
-        let (sine, cosine) = (series(z, &SINHC), series(z, &COSH));
-        std::array::from_fn(|l| sine[l] / cosine[l])
-    } else {
-        one_by_one(z, elementary::tanhc)
-    }
-}
-
-#[inline(never)]
-fn one_by_one(x: &Lanes, f: fn(Real<Plain>) -> Real<Plain>) -> Lanes {
-    x.map(|x| f(x.into()).value())
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -528,24 +456,5 @@ mod tests {
         let off = Release { distance: number(-1.0), ..release };
         compare(&path, &[0.2, 0.3].map(voellmy), off, &times);
         compare(&path, &[0.2].map(voellmy), release, &[]);
-    }
-
-    #[test]
-    fn series_are_those_of_one_number() {
-        for size in [1e-3, 0.01, 0.06, 0.3, 1.9] {
-            let x: Lanes = std::array::from_fn(|l| size * (l as f64 / 7.0));
-            let one = |f: fn(Number) -> Number, x: f64| f(x.into()).value();
-            for (l, x) in x.iter().enumerate() {
-                let all = [*x; LANES];
-                let exact = one(elementary::expc, *x);
-                // Half an ulp for each doubling.
-                assert!((expc(&all)[l] - exact).abs() < 6e-16, "{x}");
-                let z = x.min(0.9);
-                let exact = one(elementary::atanhc, z);
-                assert_eq!(atanhc(&[z; LANES])[l], exact);
-                let exact = one(elementary::tanhc, -z);
-                assert_eq!(tanhc(&[-z; LANES])[l], exact);
-            }
-        }
     }
 }

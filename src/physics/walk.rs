@@ -5,12 +5,13 @@
 //! the exact family, the one in `numeric` the rest; sampling a flow at given
 //! times and following it to rest are written once, over both.
 
+use super::ahead::{Ahead, Resistance};
 use super::changed::ChangedWalker;
 use super::exact::{End, Force, Pace};
 use super::forces::Forces;
 use super::friction::{Friction, Rate, Site, Varies};
 use super::numeric::{NumericWalker, PLAIN, WITH_DERIVATIVES};
-use super::track::{Piece, Track};
+use super::track::{Columns, Piece, Track};
 use crate::error::Stop;
 use crate::scalar::{Kind, Real};
 
@@ -241,6 +242,9 @@ pub(crate) fn first_piece<K: Kind>(
 /// The walker of the exact family.
 struct ExactWalker<'a, K: Kind, L> {
     pieces: &'a [Piece],
+    columns: &'a Columns,
+    /// Pieces crossed beforehand, of plain numbers.
+    ahead: Ahead,
     depth: f64,
     law: &'a L,
     /// The law's rates, if they are the same everywhere.
@@ -291,6 +295,8 @@ impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
             .then(|| law.rate(&site(&pieces[index], path.depth), zero));
         let mut walker = Self {
             pieces,
+            columns: path.track.columns(),
+            ahead: Ahead::default(),
             depth: path.depth,
             law,
             uniform,
@@ -509,11 +515,17 @@ impl<K: Kind, L: Friction<K>> ExactWalker<'_, K, L> {
         let b = Real::new(0.0);
         let last = self.pieces.len() - 1;
         self.within = Real::new(0.0);
+        let law = Resistance {
+            mu: rate.mu.value(),
+            constant: rate.constant.value(),
+            c: c.value(),
+        };
         for index in self.index + 1..last {
             let piece = &self.pieces[index];
             let a = piece.pull - rate.mu * piece.load - rate.constant;
-            let crossed =
-                Force { a, b, c }.cross(pace, Real::new(piece.length));
+            let crossed = self.beforehand(index, pace, &law).or_else(|| {
+                Force { a, b, c }.cross(pace, Real::new(piece.length))
+            });
             let Some((arrival, after)) = crossed else {
                 return self.land(index, pace, begins);
             };
@@ -530,6 +542,24 @@ impl<K: Kind, L: Friction<K>> ExactWalker<'_, K, L> {
             pace = arrival;
         }
         self.land(last, pace, begins)
+    }
+
+    /// The crossing of a piece, worked out with those after it; derivatives
+    /// are not.
+    #[inline(always)]
+    fn beforehand(
+        &mut self,
+        index: usize,
+        pace: Pace<K>,
+        law: &Resistance,
+    ) -> Option<(Pace<K>, Real<K>)> {
+        if K::DIRECTIONS > 0 {
+            return None;
+        }
+        let entered = (pace.u.value(), pace.w.value());
+        let (u, w, after) =
+            self.ahead.crossing(self.columns, index, entered, law)?;
+        Some((Pace { u: u.into(), w: w.into() }, after.into()))
     }
 
     /// Enters a piece in the general way.

@@ -1,0 +1,99 @@
+//! Eight pieces crossed at once, ahead of the motion that asks for them.
+//!
+//! On the way over a border only the squared speed has to be known piece
+//! after piece, w1 = w0 e + a E (see `exact`). What costs time, the spread E
+//! before it and the roots and travel times after it, is the same for each
+//! piece and is worked out for eight of them as one vector. What comes out
+//! is what `Force::cross` gives, to the bit where 2 c l is below 0.1.
+
+use super::eight::{EIGHT, Eight, atanhc, expc};
+use super::exact::FAR;
+use super::track::Columns;
+
+/// What resists along the whole track: du/dt = pull - mu load - constant
+/// - c u^2.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Resistance {
+    pub(super) mu: f64,
+    pub(super) constant: f64,
+    pub(super) c: f64,
+}
+
+/// The crossings of up to eight pieces that follow each other.
+#[derive(Debug, Default)]
+pub(super) struct Ahead {
+    first: usize,
+    /// How many of the pieces are left over their border.
+    whole: usize,
+    /// Speed [m/s] and its square at the far borders.
+    u: Eight,
+    w: Eight,
+    /// The travel times [s].
+    after: Eight,
+}
+
+/// Speed, squared speed and travel time of a crossing.
+pub(super) type Crossing = (f64, f64, f64);
+
+impl Ahead {
+    /// How a piece is crossed that is entered with speed `u` and its square
+    /// `w`; `None` where its end is not known to be a border. Pieces have to be
+    /// asked for one after the other, of one motion.
+    #[inline(always)]
+    pub(super) fn crossing(
+        &mut self,
+        columns: &Columns,
+        index: usize,
+        (u, w): (f64, f64),
+        law: &Resistance,
+    ) -> Option<Crossing> {
+        let mut at = index.wrapping_sub(self.first);
+        if at >= self.whole {
+            self.cross(columns, index, (u, w), law);
+            at = 0;
+        }
+        let known = at < self.whole.min(EIGHT);
+        known.then(|| (self.u[at], self.w[at], self.after[at]))
+    }
+
+    #[inline(never)]
+    fn cross(
+        &mut self,
+        columns: &Columns,
+        first: usize,
+        (u, w): (f64, f64),
+        law: &Resistance,
+    ) {
+        (self.first, self.whole) = (first, 0);
+        let Some([pull, load, length]) = columns.eight(first) else { return };
+        let c = law.c;
+        let x = length.map(|l| c * l * 2.0);
+        let mut spread = expc(&x);
+        let (mut a, mut decay) = ([0.0; EIGHT], [0.0; EIGHT]);
+        for i in 0..EIGHT {
+            a[i] = pull[i] - law.mu * load[i] - law.constant;
+            spread[i] = spread[i] * length[i] * 2.0;
+            decay[i] = 1.0 - c * spread[i];
+        }
+        let gain: Eight = std::array::from_fn(|i| a[i] * spread[i]);
+        let mut before = w;
+        for i in 0..EIGHT {
+            before = before * decay[i] + gain[i];
+            self.w[i] = before;
+        }
+        self.u = self.w.map(f64::sqrt);
+        let entered: Eight =
+            std::array::from_fn(|i| if i == 0 { u } else { self.u[i - 1] });
+        let q: Eight = std::array::from_fn(|i| {
+            spread[i] / (self.u[i] + entered[i] * decay[i])
+        });
+        let slowed = atanhc(&std::array::from_fn(|i| a[i] * c * q[i] * q[i]));
+        self.after = std::array::from_fn(|i| q[i] * slowed[i]);
+        // Beyond a stop nothing is a number.
+        let ends = |i: &usize| {
+            let crossed = self.w[*i] > 0.0 && x[*i].abs() <= FAR;
+            !crossed || self.after[*i].is_nan()
+        };
+        self.whole = (0..EIGHT).find(ends).unwrap_or(EIGHT);
+    }
+}
