@@ -67,33 +67,59 @@ impl Ahead {
         (self.first, self.whole) = (first, 0);
         let Some([pull, load, length]) = columns.eight(first) else { return };
         let c = law.c;
-        let x = length.map(|l| c * l * 2.0);
-        let mut spread = expc(&x);
-        let (mut a, mut decay) = ([0.0; EIGHT], [0.0; EIGHT]);
+        let (mut x, mut a) = ([0.0; EIGHT], [0.0; EIGHT]);
         for i in 0..EIGHT {
+            x[i] = c * length[i] * 2.0;
             a[i] = pull[i] - law.mu * load[i] - law.constant;
+        }
+        let mut spread = expc(&x);
+        let (mut decay, mut gain) = ([0.0; EIGHT], [0.0; EIGHT]);
+        for i in 0..EIGHT {
             spread[i] = spread[i] * length[i] * 2.0;
             decay[i] = 1.0 - c * spread[i];
+            gain[i] = a[i] * spread[i];
         }
-        let gain: Eight = std::array::from_fn(|i| a[i] * spread[i]);
         let mut before = w;
         for i in 0..EIGHT {
             before = before * decay[i] + gain[i];
             self.w[i] = before;
         }
-        self.u = self.w.map(f64::sqrt);
-        let entered: Eight =
-            std::array::from_fn(|i| if i == 0 { u } else { self.u[i - 1] });
-        let q: Eight = std::array::from_fn(|i| {
-            spread[i] / (self.u[i] + entered[i] * decay[i])
-        });
-        let slowed = atanhc(&std::array::from_fn(|i| a[i] * c * q[i] * q[i]));
-        self.after = std::array::from_fn(|i| q[i] * slowed[i]);
-        // Beyond a stop nothing is a number.
-        let ends = |i: &usize| {
-            let crossed = self.w[*i] > 0.0 && x[*i].abs() <= FAR;
-            !crossed || self.after[*i].is_nan()
+        // The speeds at all nine borders.
+        let mut speeds = [u; EIGHT + 1];
+        for i in 0..EIGHT {
+            speeds[i + 1] = self.w[i].sqrt();
+        }
+        let (mut q, mut z) = ([0.0; EIGHT], [0.0; EIGHT]);
+        for i in 0..EIGHT {
+            q[i] = spread[i] / (speeds[i + 1] + speeds[i] * decay[i]);
+            z[i] = a[i] * c * q[i] * q[i];
+        }
+        let slowed = atanhc(&z);
+        for i in 0..EIGHT {
+            self.u[i] = speeds[i + 1];
+            self.after[i] = q[i] * slowed[i];
+        }
+        self.whole = self.leading(&x);
+    }
+
+    /// How many crossings there are before something else happens.
+    #[inline(always)]
+    fn leading(&self, x: &Eight) -> usize {
+        let mut all = true;
+        for i in 0..EIGHT {
+            all &= (self.w[i] > 0.0) & (x[i].abs() <= FAR);
+            all &= self.after[i] < f64::INFINITY;
+        }
+        if all { EIGHT } else { self.leading_some(x) }
+    }
+
+    /// Beyond a stop nothing is a number.
+    #[cold]
+    fn leading_some(&self, x: &Eight) -> usize {
+        let crossed = |i: &usize| {
+            let moves = self.w[*i] > 0.0 && x[*i].abs() <= FAR;
+            moves && self.after[*i] < f64::INFINITY
         };
-        self.whole = (0..EIGHT).find(ends).unwrap_or(EIGHT);
+        (0..EIGHT).take_while(crossed).count()
     }
 }

@@ -27,7 +27,11 @@ fn near(x: &Eight, bound: f64) -> bool {
 
 #[inline(always)]
 fn series(x: &Eight, coefficients: &[f64]) -> Eight {
-    x.map(|x| polynomial(x, coefficients))
+    let mut sums = [0.0; EIGHT];
+    for i in 0..EIGHT {
+        sums[i] = polynomial(x[i], coefficients);
+    }
+    sums
 }
 
 /// `elementary::expc` of each; beyond its series by doubling, as
@@ -75,7 +79,11 @@ pub(super) fn atanhc(z: &Eight) -> Eight {
 pub(super) fn tanhc(z: &Eight) -> Eight {
     if near(z, 0.05) {
         let (sine, cosine) = (series(z, &SINHC), series(z, &COSH));
-        std::array::from_fn(|l| sine[l] / cosine[l])
+        let mut tangent = [0.0; EIGHT];
+        for i in 0..EIGHT {
+            tangent[i] = sine[i] / cosine[i];
+        }
+        tangent
     } else {
         one_by_one(z, elementary::tanhc)
     }

@@ -139,20 +139,20 @@ impl Common {
 struct Legs {
     /// The piece that the first leg is on.
     first: usize,
-    /// Speed [m/s] and time [s] at the beginning of each leg.
-    speeds: Vec<Lanes>,
-    begins: Vec<Lanes>,
+    /// Where the lanes are at the beginning of each leg. Longer than needed:
+    /// it is kept for the next eight.
+    fronts: Vec<Front>,
     /// How many legs of each lane end at a border.
     whole: [usize; LANES],
     /// Where each lane left the others.
     left: [Option<Standing<Plain>>; LANES],
 }
 
-/// Where eight motions are at a border.
+/// Where eight motions are at a border: speed, its square, which the solution
+/// over distance needs, and time.
 #[derive(Clone, Copy)]
 struct Front {
     u: Lanes,
-    /// u^2, which the solution over distance needs.
     w: Lanes,
     t: Lanes,
 }
@@ -166,69 +166,68 @@ impl Legs {
         (first, within, release): (usize, f64, Release<Plain>),
         until: f64,
     ) {
-        let u = release.speed.value();
-        let mut front =
-            Front { u: [u; LANES], w: [u * u; LANES], t: [0.0; LANES] };
+        let mut front = Front::of(release.speed.value());
         let mut going = [true; LANES];
         let mut running = *common;
-        self.begin(first, pieces.len());
+        self.first = first;
+        self.left = [None; LANES];
+        self.fronts.resize(pieces.len().max(self.fronts.len()), front);
+        self.fronts[0] = front;
         // The last piece has no end.
-        for (i, piece) in pieces[first..pieces.len() - 1].iter().enumerate() {
-            self.speeds.push(front.u);
-            self.begins.push(front.t);
+        let finite = &pieces[first..pieces.len() - 1];
+        let mut legs = finite.len();
+        for (i, piece) in finite.iter().enumerate() {
             let skipped = if i == 0 { within } else { 0.0 };
             let length = piece.length - skipped;
-            let (next, met) = front.step(piece, length, &running);
-            if met {
-                self.part(&front, &next, (i, skipped), &mut going);
+            if front.step(piece, length, &running) {
+                let over = |l| front.is_over(&running, length, l);
+                self.part(over, (i, skipped), &mut going);
+                if !front.close_ranks(&mut running, &going) {
+                    return;
+                }
             }
-            front = next;
-            if met && !front.close_ranks(&mut running, &going) {
-                return;
-            }
-            if i % PAUSE == PAUSE - 1 && front.t.iter().all(|t| *t > until) {
+            self.fronts[i + 1] = front;
+            if i % PAUSE == PAUSE - 1 && front.is_past(until) {
+                legs = i + 1;
                 break;
             }
         }
-        self.speeds.push(front.u);
-        self.begins.push(front.t);
-        self.end(&front, &going);
-    }
-
-    fn begin(&mut self, first: usize, most: usize) {
-        self.first = first;
-        self.speeds.clear();
-        self.begins.clear();
-        self.speeds.reserve(most + 1);
-        self.begins.reserve(most + 1);
-        self.left = [None; LANES];
+        self.end(legs, &going);
     }
 
     /// The lanes that still go on stand at the same border.
-    fn end(&mut self, front: &Front, going: &[bool; LANES]) {
-        let legs = self.speeds.len() - 1;
+    fn end(&mut self, legs: usize, going: &[bool; LANES]) {
         for lane in (0..LANES).filter(|&lane| going[lane]) {
             self.whole[lane] = legs;
-            self.left[lane] =
-                Some(front.standing(self.first + legs, 0.0, lane));
+            self.left[lane] = Some(self.standing(legs, 0.0, lane));
         }
+    }
+
+    fn standing(
+        &self,
+        leg: usize,
+        within: f64,
+        lane: usize,
+    ) -> Standing<Plain> {
+        let Front { u, w, t } = &self.fronts[leg];
+        let pace = Pace { u: u[lane].into(), w: w[lane].into() };
+        let (index, within) = (self.first + leg, within.into());
+        Standing { index, within, begins: t[lane].into(), pace }
     }
 
     /// Lets the lanes leave that met something else than a border.
     #[cold]
     fn part(
         &mut self,
-        front: &Front,
-        next: &Front,
+        over: impl Fn(usize) -> bool,
         (leg, within): (usize, f64),
         going: &mut [bool; LANES],
     ) {
         for lane in 0..LANES {
-            if going[lane] && !next.is_number(lane) {
+            if going[lane] && !over(lane) {
                 going[lane] = false;
                 self.whole[lane] = leg;
-                let index = self.first + leg;
-                self.left[lane] = Some(front.standing(index, within, lane));
+                self.left[lane] = Some(self.standing(leg, within, lane));
             }
         }
     }
@@ -248,14 +247,14 @@ impl Legs {
             for lane in 0..LANES {
                 let mut leg = legs[lane];
                 while leg < self.whole[lane]
-                    && self.begins[leg + 1][lane] <= time
+                    && self.fronts[leg + 1].t[lane] <= time
                 {
                     leg += 1;
                 }
                 legs[lane] = leg;
                 a[lane] = common.pull(&pieces[self.first + leg], lane);
-                u[lane] = self.speeds[leg][lane];
-                after[lane] = time - self.begins[leg][lane];
+                u[lane] = self.fronts[leg].u[lane];
+                after[lane] = time - self.fronts[leg].t[lane];
             }
             let speeds = speeds_after(&a, &common.c, &u, &after);
             for lane in 0..LANES {
@@ -268,46 +267,50 @@ impl Legs {
 }
 
 impl Front {
-    /// Across one piece, as `Force::cross`; and whether a lane met
-    /// something else than the border, where its time is not a number.
+    /// The release: at t = 0 with speed `u`.
+    fn of(u: f64) -> Self {
+        Self { u: [u; LANES], w: [u * u; LANES], t: [0.0; LANES] }
+    }
+
+    fn is_past(&self, time: f64) -> bool {
+        self.t.iter().all(|t| *t > time)
+    }
+
+    /// Goes on over one piece, as `Force::cross`; whether a lane met
+    /// something else than its border.
     #[inline(always)]
-    fn step(&self, piece: &Piece, length: f64, law: &Common) -> (Self, bool) {
-        let x = law.c.map(|c| c * length * 2.0);
-        let spread = expc(&x).map(|e| e * length * 2.0);
-        let mut next = *self;
+    fn step(&mut self, piece: &Piece, length: f64, law: &Common) -> bool {
+        let mut x = [0.0; LANES];
+        for l in 0..LANES {
+            x[l] = law.c[l] * length * 2.0;
+        }
+        let ratio = expc(&x);
         let (mut q, mut z) = ([0.0; LANES], [0.0; LANES]);
         for l in 0..LANES {
+            let spread = ratio[l] * length * 2.0;
             let a = law.pull(piece, l);
-            let decay = 1.0 - law.c[l] * spread[l];
-            next.w[l] = self.w[l] * decay + a * spread[l];
-            next.u[l] = next.w[l].sqrt();
-            q[l] = spread[l] / (next.u[l] + self.u[l] * decay);
+            let decay = 1.0 - law.c[l] * spread;
+            self.w[l] = self.w[l] * decay + a * spread;
+            let u = self.w[l].sqrt();
+            q[l] = spread / (u + self.u[l] * decay);
+            self.u[l] = u;
             z[l] = a * law.c[l] * q[l] * q[l];
         }
         let slowed = atanhc(&z);
-        let mut met = false;
+        let mut all = true;
         for l in 0..LANES {
-            let crossed = next.w[l] > 0.0 && x[l].abs() <= FAR;
-            let after = if crossed { q[l] * slowed[l] } else { f64::NAN };
-            next.t[l] = self.t[l] + after;
-            met |= next.t[l].is_nan();
+            self.t[l] += q[l] * slowed[l];
+            all &= (self.w[l] > 0.0) & (x[l].abs() <= FAR);
+            all &= self.t[l] < f64::INFINITY;
         }
-        (next, met)
+        !all
     }
 
-    fn is_number(&self, lane: usize) -> bool {
-        !self.t[lane].is_nan()
-    }
-
-    fn standing(
-        &self,
-        index: usize,
-        within: f64,
-        lane: usize,
-    ) -> Standing<Plain> {
-        let pace = Pace { u: self.u[lane].into(), w: self.w[lane].into() };
-        let begins = self.t[lane].into();
-        Standing { index, within: within.into(), begins, pace }
+    /// Whether a lane came over a piece of this length and stands at its
+    /// border.
+    fn is_over(&self, law: &Common, length: f64, lane: usize) -> bool {
+        let x = law.c[lane] * length * 2.0;
+        self.w[lane] > 0.0 && x.abs() <= FAR && self.t[lane] < f64::INFINITY
     }
 
     /// Lanes that have left take on law and state of one that goes on, so
