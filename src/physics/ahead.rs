@@ -6,6 +6,11 @@
 //! piece and is worked out for eight of them as one vector. What comes out
 //! is what `Force::cross` gives, to the bit where 2 c l is below 0.1.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "loops over an index become vectors, chains of iterators do not"
+)]
+
 use super::eight::{EIGHT, Eight, atanhc, expc};
 use super::exact::FAR;
 use super::track::Columns;

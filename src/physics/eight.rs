@@ -5,6 +5,11 @@
 //! AVX-512. The same series serve as for one number; where one of the eight
 //! lies outside them, all go the long way.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "loops over an index become vectors, chains of iterators do not"
+)]
+
 use super::elementary::{self, ATANHC, COSH, EXPC, SINHC};
 use super::exact::FAR;
 use crate::scalar::{Plain, Real, polynomial};

@@ -12,6 +12,11 @@
 //! slope without end, a number that is none. It goes on from there as every
 //! other motion does.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "loops over an index become vectors, chains of iterators do not"
+)]
+
 use super::eight::{EIGHT, Eight, atanhc, expc, tanhc};
 use super::exact::{FAR, Pace};
 use super::friction::{Friction, Rate, Varies};
@@ -297,9 +302,12 @@ impl Front {
             z[l] = a * law.c[l] * q[l] * q[l];
         }
         let slowed = atanhc(&z);
-        let mut all = true;
         for l in 0..LANES {
             self.t[l] += q[l] * slowed[l];
+        }
+        // A loop of its own: together they are not made vectors of.
+        let mut all = true;
+        for l in 0..LANES {
             all &= (self.w[l] > 0.0) & (x[l].abs() <= FAR);
             all &= self.t[l] < f64::INFINITY;
         }
