@@ -4,7 +4,7 @@
 //! after piece, w1 = w0 e + a E (see `exact`). What costs time, the spread E
 //! before it and the roots and travel times after it, is the same for each
 //! piece and is worked out for eight of them as one vector. What comes out
-//! is what `Force::cross` gives, to the bit where 2 c l is below 0.1.
+//! is what `Force::cross` gives, to round-off.
 
 #![allow(
     clippy::needless_range_loop,
