@@ -9,7 +9,9 @@ pub mod forces;
 pub mod friction;
 pub mod track;
 
+mod ahead;
 mod changed;
+mod eight;
 mod elementary;
 mod exact;
 mod lanes;
