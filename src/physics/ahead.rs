@@ -12,8 +12,9 @@
 )]
 
 use super::eight::{EIGHT, Eight, atanhc, expc};
-use super::exact::{FAR, Pace};
+use super::exact::{FAR, Force, Pace};
 use super::resistance::Even;
+use super::slopes::{Slopes, Solved};
 use super::track::Columns;
 use crate::scalar::{Kind, Plain, Real};
 
@@ -28,13 +29,15 @@ pub(super) struct Ahead {
     w: Eight,
     /// The travel times [s].
     after: Eight,
+    /// How they change, for numbers with derivatives.
+    slopes: Slopes,
 }
 
 impl Ahead {
     /// The arrival at the far border of a piece, and the time it takes;
-    /// `None` where its end is not known to be a border, and of numbers with
-    /// derivatives. Pieces have to be asked for one after the other, of one
-    /// motion under one force.
+    /// `None` where its end is not known to be a border. Pieces have to be
+    /// asked for one after the other, of one motion; `force` is what `even`
+    /// is on this one.
     #[inline(always)]
     pub(super) fn crossing<K: Kind>(
         &mut self,
@@ -42,25 +45,27 @@ impl Ahead {
         index: usize,
         pace: &Pace<K>,
         even: &Even<K>,
+        force: &Force<K>,
     ) -> Option<(Pace<K>, Real<K>)> {
-        if K::DIRECTIONS > 0 {
-            return None;
-        }
         let mut at = index.wrapping_sub(self.first);
         if at >= self.whole {
             let entered = (pace.u.value(), pace.w.value());
-            self.cross(columns, index, entered, &even.values());
+            self.cross::<K>(columns, index, entered, &even.values());
             at = 0;
         }
-        let number = |row: &Eight| Real::new(row[at]);
-        (at < self.whole.min(EIGHT)).then(|| {
-            let pace = Pace { u: number(&self.u), w: number(&self.w) };
-            (pace, number(&self.after))
-        })
+        if at >= self.whole.min(EIGHT) {
+            return None;
+        }
+        let values = [self.u[at], self.w[at], self.after[at]];
+        if K::DIRECTIONS > 0 {
+            return Some(self.slopes.crossing(at, values, pace, force));
+        }
+        let [u, w, after] = values.map(Real::new);
+        Some((Pace { u, w }, after))
     }
 
     #[inline(never)]
-    fn cross(
+    fn cross<K: Kind>(
         &mut self,
         columns: &Columns,
         first: usize,
@@ -76,34 +81,59 @@ impl Ahead {
             x[i] = c * length[i] * 2.0;
             a[i] = along * pull[i] - across * load[i] - constant;
         }
-        let mut spread = expc(&x);
+        let sloped = K::DIRECTIONS > 0;
+        let (mut spread, mut spread_c) = expc(&x, sloped);
         let (mut decay, mut gain) = ([0.0; EIGHT], [0.0; EIGHT]);
         for i in 0..EIGHT {
             spread[i] = spread[i] * length[i] * 2.0;
+            spread_c[i] = spread_c[i] * length[i] * length[i] * 4.0;
             decay[i] = 1.0 - c * spread[i];
             gain[i] = a[i] * spread[i];
         }
-        let mut before = w;
+        let (mut before, mut entered) = (w, [w; EIGHT]);
         for i in 0..EIGHT {
+            entered[i] = before;
             before = before * decay[i] + gain[i];
             self.w[i] = before;
         }
-        // The speeds at all nine borders.
-        let mut speeds = [u; EIGHT + 1];
-        for i in 0..EIGHT {
-            speeds[i + 1] = self.w[i].sqrt();
-        }
+        let speeds = self.set_speeds(u);
         let (mut q, mut z) = ([0.0; EIGHT], [0.0; EIGHT]);
         for i in 0..EIGHT {
             q[i] = spread[i] / (speeds[i + 1] + speeds[i] * decay[i]);
             z[i] = a[i] * c * q[i] * q[i];
         }
-        let slowed = atanhc(&z);
+        let (slowed, bent) = atanhc(&z, sloped);
         for i in 0..EIGHT {
-            self.u[i] = speeds[i + 1];
             self.after[i] = q[i] * slowed[i];
         }
         self.whole = self.leading(&x);
+        if sloped {
+            let length = *length;
+            self.slopes.set(&Solved {
+                length,
+                a,
+                c,
+                spread,
+                spread_c,
+                decay,
+                entered,
+                speeds,
+                q,
+                z,
+                bent,
+            });
+        }
+    }
+
+    /// The speeds at all nine borders.
+    #[inline(always)]
+    fn set_speeds(&mut self, u: f64) -> [f64; EIGHT + 1] {
+        let mut speeds = [u; EIGHT + 1];
+        for i in 0..EIGHT {
+            speeds[i + 1] = self.w[i].sqrt();
+            self.u[i] = speeds[i + 1];
+        }
+        speeds
     }
 
     /// How many crossings there are before something else happens.

@@ -10,9 +10,11 @@
     reason = "loops over an index become vectors, chains of iterators do not"
 )]
 
-use super::elementary::{self, ATANHC, COSH, EXPC, SINHC};
+use super::elementary::{
+    self, ATANHC, ATANHC_SLOPE, COSH, EXPC, EXPC_SLOPE, SINHC,
+};
 use super::exact::FAR;
-use crate::scalar::{Plain, Real, polynomial};
+use crate::scalar::{Grad, Plain, Real, polynomial};
 
 /// How many numbers there are.
 pub(super) const EIGHT: usize = 8;
@@ -39,44 +41,59 @@ fn series(x: &Eight, coefficients: &[f64]) -> Eight {
     sums
 }
 
-/// `elementary::expc` of each; beyond its series by doubling, as
-/// (1 - exp(-2y))/(2y) = f (1 - y f/2) for f = (1 - exp(-y))/y.
+/// `elementary::expc` of each, and its derivative if asked for; beyond its
+/// series by doubling, as f(2y) = f (1 - y f/2) for f = (1 - exp(-y))/y.
 #[inline(always)]
-pub(super) fn expc(x: &Eight) -> Eight {
+pub(super) fn expc(x: &Eight, sloped: bool) -> (Eight, Eight) {
     if near(x, 0.04) {
-        series(x, &EXPC[..8])
+        both(x, &EXPC[..8], &EXPC_SLOPE[..8], sloped)
     } else if near(x, 0.1) {
-        series(x, &EXPC)
+        both(x, &EXPC, &EXPC_SLOPE, sloped)
     } else {
         doubled_expc(x)
     }
 }
 
+/// A series and, if asked for, the one of its derivative.
+#[inline(always)]
+fn both(x: &Eight, of: &[f64], slope: &[f64], sloped: bool) -> (Eight, Eight) {
+    let slopes = if sloped { series(x, slope) } else { [0.0; EIGHT] };
+    (series(x, of), slopes)
+}
+
 #[inline(never)]
-fn doubled_expc(x: &Eight) -> Eight {
+fn doubled_expc(x: &Eight) -> (Eight, Eight) {
     let bound = x.iter().fold(0.0, |a: f64, x| a.max(x.abs())).min(FAR);
     let doublings = (bound / 0.1).log2().ceil().max(0.0) as i32;
     let mut y = x.map(|x| x * 0.5_f64.powi(doublings));
-    let mut f = series(&y, &EXPC);
+    let (mut f, mut slope) = both(&y, &EXPC, &EXPC_SLOPE, true);
     for _ in 0..doublings {
         for l in 0..EIGHT {
-            f[l] *= 1.0 - 0.5 * y[l] * f[l];
+            let yf = y[l] * f[l];
+            slope[l] = 0.5 * (slope[l] * (1.0 - yf) - 0.5 * f[l] * f[l]);
+            f[l] *= 1.0 - 0.5 * yf;
             y[l] *= 2.0;
         }
     }
-    f
+    (f, slope)
 }
 
-/// `elementary::atanhc` of each.
+/// `elementary::atanhc` of each, and its derivative if asked for.
 #[inline(always)]
-pub(super) fn atanhc(z: &Eight) -> Eight {
+pub(super) fn atanhc(z: &Eight, sloped: bool) -> (Eight, Eight) {
     if near(z, 3e-3) {
-        series(z, &ATANHC[..6])
+        both(z, &ATANHC[..6], &ATANHC_SLOPE[..6], sloped)
     } else if near(z, 0.05) {
-        series(z, &ATANHC)
+        both(z, &ATANHC, &ATANHC_SLOPE, sloped)
     } else {
-        one_by_one(z, elementary::atanhc)
+        beyond_series(z)
     }
+}
+
+#[inline(never)]
+fn beyond_series(z: &Eight) -> (Eight, Eight) {
+    let all = z.map(|z| elementary::atanhc(Real::<Grad<1>>::variable(z, 0)));
+    (all.map(Real::value), all.map(|f| f.partial(0)))
 }
 
 /// `elementary::tanhc` of each.
@@ -114,10 +131,10 @@ mod tests {
                 let all = [*x; EIGHT];
                 let exact = one(elementary::expc, *x);
                 // Half an ulp for each doubling.
-                assert!((expc(&all)[l] - exact).abs() < 6e-16, "{x}");
+                assert!((expc(&all, false).0[l] - exact).abs() < 6e-16, "{x}");
                 let z = x.min(0.9);
                 let exact = one(elementary::atanhc, z);
-                assert_eq!(atanhc(&[z; EIGHT])[l], exact);
+                assert_eq!(atanhc(&[z; EIGHT], false).0[l], exact);
                 let exact = one(elementary::tanhc, -z);
                 assert_eq!(tanhc(&[-z; EIGHT])[l], exact);
             }

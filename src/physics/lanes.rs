@@ -288,7 +288,7 @@ impl Front {
         for l in 0..LANES {
             x[l] = law.c[l] * length * 2.0;
         }
-        let ratio = expc(&x);
+        let (ratio, _) = expc(&x, false);
         let (mut q, mut z) = ([0.0; LANES], [0.0; LANES]);
         for l in 0..LANES {
             let spread = ratio[l] * length * 2.0;
@@ -300,7 +300,7 @@ impl Front {
             self.u[l] = u;
             z[l] = a * law.c[l] * q[l] * q[l];
         }
-        let slowed = atanhc(&z);
+        let (slowed, _) = atanhc(&z, false);
         for l in 0..LANES {
             self.t[l] += q[l] * slowed[l];
         }

@@ -18,6 +18,7 @@ mod lanes;
 mod numeric;
 mod resistance;
 mod skim;
+mod slopes;
 mod walk;
 
 pub use changed::sample_changed;

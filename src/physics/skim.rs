@@ -88,7 +88,7 @@ pub(crate) fn skim_even<K: Kind>(
     let cross = |piece: &Piece, Entry { index, pace, .. }: &Entry<K>| {
         let force = even.on(piece);
         let crossed = ahead
-            .crossing(columns, *index, pace, even)
+            .crossing(columns, *index, pace, even, &force)
             .or_else(|| force.cross(*pace, Real::new(piece.length)));
         (force, crossed)
     };
