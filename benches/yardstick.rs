@@ -34,22 +34,39 @@ fn main() {
 }
 
 fn against_c(folder: &Path, event: &Event, model: &reference::M1) {
-    let yard = compile(folder, "yard.c");
+    let yard = compile(folder, "yard.c", "yard", &[]);
+    let series = "closed form series, 1.4 m";
     let flows: Vec<(f64, f64)> = (0..5)
-        .map(|_| (flow_seconds(event), c_flow_seconds(folder, &yard)))
+        .map(|_| (flow_seconds(event), c_flow_seconds(folder, &yard, series)))
         .collect();
     tell("one simulation, couloir over C closed form", &flows);
-    let mh = compile(folder, "mh.c");
+    let fast = compile(folder, "yard.c", "yard_fast", &["-ffast-math"]);
+    let lanes = "closed form 8 lanes, 1.4 m";
+    for (yard, how) in [(&yard, "C lanes"), (&fast, "C lanes, fast-math")] {
+        let many: Vec<(f64, f64)> = (0..5)
+            .map(|_| {
+                (many_seconds(event), c_flow_seconds(folder, yard, lanes))
+            })
+            .collect();
+        tell(&format!("one of many simulations over {how}"), &many);
+    }
+    let mh = compile(folder, "mh.c", "mh", &[]);
     let chains: Vec<(f64, f64)> = (0..5)
         .map(|_| (chains_seconds(model), c_chains_seconds(folder, &mh)))
         .collect();
     tell("4 x 50 000 Metropolis-Hastings steps, CPU", &chains);
 }
 
-fn compile(folder: &Path, source: &str) -> PathBuf {
-    let program = std::env::temp_dir().join(source.replace('.', "_"));
+fn compile(
+    folder: &Path,
+    source: &str,
+    name: &str,
+    flags: &[&str],
+) -> PathBuf {
+    let program = std::env::temp_dir().join(format!("{name}_c"));
     let done = Command::new("cc")
         .args(["-O3", "-march=native", "-fno-math-errno"])
+        .args(flags)
         .arg(folder.join(source))
         .arg("-o")
         .arg(&program)
@@ -91,9 +108,30 @@ fn flow_seconds(event: &Event) -> f64 {
     best
 }
 
-fn c_flow_seconds(folder: &Path, program: &Path) -> f64 {
+/// The mean seconds of one simulation of 512, eight side by side.
+fn many_seconds(event: &Event) -> f64 {
+    let number = Real::<Plain>::new;
+    let law = |i: u32| {
+        let share = f64::from(i) / 512.0;
+        let (mu, xi) = (0.2 + 0.25 * share, 250.0 + 1000.0 * share);
+        Voellmy { mu: number(mu), xi: number(xi) }
+    };
+    let laws: Vec<_> = (0..512).map(law).collect();
+    let times = event.velocity.times();
+    let mut best = f64::INFINITY;
+    for _ in 0..100 {
+        let begun = Instant::now();
+        let speeds = event.slide_many(&laws, times);
+        assert!(speeds.iter().all(Result::is_ok));
+        best = best.min(begun.elapsed().as_secs_f64() / 512.0);
+    }
+    best
+}
+
+/// The best time of the C program's line that is called `what`.
+fn c_flow_seconds(folder: &Path, program: &Path, what: &str) -> f64 {
     let text = output(Command::new(program).current_dir(folder));
-    let line = text.lines().find(|l| l.contains("closed form series, 1.4 m"));
+    let line = text.lines().find(|l| l.contains(what));
     let ns = line
         .and_then(|l| l.split("(min ").nth(1))
         .and_then(|rest| rest.split(')').next())

@@ -6,11 +6,12 @@
 //! at both ends (the secant), over steps so short that the error, of second
 //! order, is far below any noise.
 
+use super::ahead::Ahead;
 use super::exact::{End, Force, Pace};
 use super::forces::{Axis, Forces, Moment, NEAR};
 use super::friction::{Friction, Rate, Varies};
 use super::resistance::{Even, Resistance, Tilt};
-use super::skim::{Crossing, Entry, UNBOUNDED, skim};
+use super::skim::{Crossing, Entry, skim, skim_even};
 use super::track::Piece;
 use super::walk::{Path, Release, Rest, State, Walker, first_piece, site};
 use crate::error::Stop;
@@ -45,6 +46,7 @@ pub(crate) struct ChangedWalker<'a, K: Kind> {
     base: Option<Resistance<K>>,
     /// The whole force, if it is as simple.
     even: Option<Even<K>>,
+    ahead: Ahead,
     /// How far [m] and how long [s] a leg is at most, where a force varies.
     farthest: f64,
     longest: f64,
@@ -93,6 +95,7 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
             varies: forces.varying().next().is_some(),
             base: None,
             even: None,
+            ahead: Ahead::default(),
             farthest: f64::INFINITY,
             longest: f64::INFINITY,
             cut: None,
@@ -141,6 +144,7 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         self.base = base.filter(|base| self.bends || !base.is_linear());
         let even = base.filter(|_| !self.varies);
         self.even = even.and_then(|base| Even::of(&base, &self.tilt));
+        self.ahead = Ahead::default();
     }
 
     /// The piece in which the next cut lies, or the last one.
@@ -333,30 +337,26 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         Ok(())
     }
 
-    /// Crosses whole pieces until one holds `time`, or something else than
-    /// its border ends the leg.
+    /// How the next piece is entered.
     #[inline(always)]
-    fn skim(
-        &self,
-        time: f64,
-        most: [f64; 2],
-        force: impl Fn(&Piece, &Pace<K>, Real<K>) -> Force<K>,
-    ) -> (Entry<K>, Option<Crossing<K>>) {
+    fn entry(&self) -> Entry<K> {
         let begins = self.begins + self.after;
-        let (index, pace) = (self.index + 1, self.arrival);
-        let entry = Entry { index, pace, begins };
-        let pieces = self.path.track.pieces();
-        let until = self.moment.map_or(time, |m| m.value().min(time));
-        skim(pieces, entry, self.whole, until, most, force)
+        Entry { index: self.index + 1, pace: self.arrival, begins }
     }
 
-    /// The same where no force varies.
+    /// `time`, or when a force changes before that.
+    fn until(&self, time: f64) -> f64 {
+        self.moment.map_or(time, |m| m.value().min(time))
+    }
+
+    /// Crosses whole pieces until one holds `time`, or something else than
+    /// its border ends the leg, where no force varies.
     #[inline(always)]
     fn skim_even(&mut self, time: f64, even: &Even<K>) -> Result<(), Stop> {
-        let (even, b) = (*even, Real::new(0.0));
-        let (entry, crossing) = self.skim(time, UNBOUNDED, |piece, _, _| {
-            Force { a: even.push(piece), b, c: even.c }
-        });
+        let (entry, until) = (self.entry(), self.until(time));
+        let (track, ahead) = (self.path.track, &mut self.ahead);
+        let (entry, crossing) =
+            skim_even(track, even, ahead, entry, self.whole, until);
         self.enter(entry, crossing)
     }
 
@@ -365,12 +365,17 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
     fn skim_varying(&mut self, time: f64) -> Result<(), Stop> {
         let span = self.longest.min(self.step());
         let moment = self.moment.map_or(f64::INFINITY, |m| m.value());
-        let force = |piece: &Piece, pace: &Pace<K>, begins: Real<K>| {
-            let stretch = [piece.start, piece.length].map(Real::new);
+        let cross = |piece: &Piece, Entry { pace, begins, .. }: &Entry<K>| {
+            let [place, length] = [piece.start, piece.length].map(Real::new);
             let limit = moment.min(begins.value() + span);
-            self.force_on(piece, stretch, pace, begins, limit)
+            let on = [place, length];
+            let force = self.force_on(piece, on, pace, *begins, limit);
+            (force, force.cross(*pace, length))
         };
-        let (entry, crossing) = self.skim(time, [self.farthest, span], force);
+        let most = [self.farthest, span];
+        let (pieces, until) = (self.path.track.pieces(), self.until(time));
+        let (entry, crossing) =
+            skim(pieces, self.entry(), self.whole, until, most, cross);
         self.enter(entry, crossing)
     }
 
@@ -477,17 +482,14 @@ impl<K: Kind> Walker<K> for ChangedWalker<'_, K> {
     }
 
     #[inline(always)]
-    fn advance_to(&mut self, time: f64) -> Result<(), Stop> {
-        while self.ends <= time {
-            match (self.even, self.border) {
-                (Some(even), Border::Piece) => self.skim_even(time, &even)?,
-                (None, Border::Piece) if self.base.is_some() => {
-                    self.skim_varying(time)?;
-                }
-                _ => self.advance()?,
+    fn leap(&mut self, time: f64) -> Result<(), Stop> {
+        match (self.even, self.border) {
+            (Some(even), Border::Piece) => self.skim_even(time, &even),
+            (None, Border::Piece) if self.base.is_some() => {
+                self.skim_varying(time)
             }
+            _ => self.advance(),
         }
-        Ok(())
     }
 
     fn speed_at(&mut self, time: f64) -> Result<Real<K>, Stop> {

@@ -24,7 +24,7 @@ pub(crate) fn atanhc<K: Kind>(z: Real<K>) -> Real<K> {
 
 /// 1/(2n+1), and n/(2n+1) one place on.
 pub(super) const ATANHC: [f64; 13] = odd_reciprocals();
-const ATANHC_SLOPE: [f64; 12] = derivative(&ATANHC);
+pub(super) const ATANHC_SLOPE: [f64; 12] = derivative(&ATANHC);
 
 const fn odd_reciprocals() -> [f64; 13] {
     let mut c = [0.0; 13];
@@ -86,7 +86,7 @@ pub(super) const EXPC: [f64; 11] = {
     }
     c
 };
-const EXPC_SLOPE: [f64; 10] = derivative(&EXPC);
+pub(super) const EXPC_SLOPE: [f64; 10] = derivative(&EXPC);
 
 /// ln(1 + x)/x.
 #[inline(always)]

@@ -5,14 +5,18 @@
 //! same pieces with the same formulas (those of `exact`). Eight of them are
 //! worked out as the lanes of one vector: plain loops over `[f64; 8]`, which
 //! the compiler turns into vector instructions of the machine it builds for
-//! (`-C target-cpu=native`). Without that, the results are the same to
-//! round-off and a motion takes about three times as long.
+//! (`-C target-cpu=native`). The results are the same to round-off without.
 //!
 //! A lane leaves the others where it meets anything but a border: a stop, a
 //! slope without end, a number that is none. It goes on from there as every
 //! other motion does.
 
-use super::elementary::{self, ATANHC, COSH, EXPC, SINHC};
+#![allow(
+    clippy::needless_range_loop,
+    reason = "loops over an index become vectors, chains of iterators do not"
+)]
+
+use super::eight::{EIGHT, Eight, atanhc, expc, tanhc};
 use super::exact::{FAR, Pace};
 use super::friction::{Friction, Rate, Varies};
 use super::track::Piece;
@@ -20,14 +24,13 @@ use super::walk::{
     Path, Release, Standing, State, first_piece, sample, sample_from, site,
 };
 use crate::error::Stop;
-use crate::scalar::{Plain, Real, polynomial};
+use crate::scalar::{Plain, Real};
 
-/// How many motions are solved side by side: two vectors of AVX2, one of
-/// AVX-512.
-const LANES: usize = 8;
+/// How many motions are solved side by side.
+const LANES: usize = EIGHT;
 
 /// One number for each lane.
-type Lanes = [f64; LANES];
+type Lanes = Eight;
 
 /// After how many pieces it is asked whether all lanes have seen their last
 /// time.
@@ -140,20 +143,20 @@ impl Common {
 struct Legs {
     /// The piece that the first leg is on.
     first: usize,
-    /// Speed [m/s] and time [s] at the beginning of each leg.
-    speeds: Vec<Lanes>,
-    begins: Vec<Lanes>,
+    /// Where the lanes are at the beginning of each leg. Longer than needed:
+    /// it is kept for the next eight.
+    fronts: Vec<Front>,
     /// How many legs of each lane end at a border.
     whole: [usize; LANES],
     /// Where each lane left the others.
     left: [Option<Standing<Plain>>; LANES],
 }
 
-/// Where eight motions are at a border.
+/// Where eight motions are at a border: speed, its square, which the solution
+/// over distance needs, and time.
 #[derive(Clone, Copy)]
 struct Front {
     u: Lanes,
-    /// u^2, which the solution over distance needs.
     w: Lanes,
     t: Lanes,
 }
@@ -167,69 +170,68 @@ impl Legs {
         (first, within, release): (usize, f64, Release<Plain>),
         until: f64,
     ) {
-        let u = release.speed.value();
-        let mut front =
-            Front { u: [u; LANES], w: [u * u; LANES], t: [0.0; LANES] };
+        let mut front = Front::of(release.speed.value());
         let mut going = [true; LANES];
         let mut running = *common;
-        self.begin(first, pieces.len());
+        self.first = first;
+        self.left = [None; LANES];
+        self.fronts.resize(pieces.len().max(self.fronts.len()), front);
+        self.fronts[0] = front;
         // The last piece has no end.
-        for (i, piece) in pieces[first..pieces.len() - 1].iter().enumerate() {
-            self.speeds.push(front.u);
-            self.begins.push(front.t);
+        let finite = &pieces[first..pieces.len() - 1];
+        let mut legs = finite.len();
+        for (i, piece) in finite.iter().enumerate() {
             let skipped = if i == 0 { within } else { 0.0 };
             let length = piece.length - skipped;
-            let (next, met) = front.step(piece, length, &running);
-            if met {
-                self.part(&front, &next, (i, skipped), &mut going);
+            if front.step(piece, length, &running) {
+                let over = |l| front.is_over(&running, length, l);
+                self.part(over, (i, skipped), &mut going);
+                if !front.close_ranks(&mut running, &going) {
+                    return;
+                }
             }
-            front = next;
-            if met && !front.close_ranks(&mut running, &going) {
-                return;
-            }
-            if i % PAUSE == PAUSE - 1 && front.t.iter().all(|t| *t > until) {
+            self.fronts[i + 1] = front;
+            if i % PAUSE == PAUSE - 1 && front.is_past(until) {
+                legs = i + 1;
                 break;
             }
         }
-        self.speeds.push(front.u);
-        self.begins.push(front.t);
-        self.end(&front, &going);
-    }
-
-    fn begin(&mut self, first: usize, most: usize) {
-        self.first = first;
-        self.speeds.clear();
-        self.begins.clear();
-        self.speeds.reserve(most + 1);
-        self.begins.reserve(most + 1);
-        self.left = [None; LANES];
+        self.end(legs, &going);
     }
 
     /// The lanes that still go on stand at the same border.
-    fn end(&mut self, front: &Front, going: &[bool; LANES]) {
-        let legs = self.speeds.len() - 1;
+    fn end(&mut self, legs: usize, going: &[bool; LANES]) {
         for lane in (0..LANES).filter(|&lane| going[lane]) {
             self.whole[lane] = legs;
-            self.left[lane] =
-                Some(front.standing(self.first + legs, 0.0, lane));
+            self.left[lane] = Some(self.standing(legs, 0.0, lane));
         }
+    }
+
+    fn standing(
+        &self,
+        leg: usize,
+        within: f64,
+        lane: usize,
+    ) -> Standing<Plain> {
+        let Front { u, w, t } = &self.fronts[leg];
+        let pace = Pace { u: u[lane].into(), w: w[lane].into() };
+        let (index, within) = (self.first + leg, within.into());
+        Standing { index, within, begins: t[lane].into(), pace }
     }
 
     /// Lets the lanes leave that met something else than a border.
     #[cold]
     fn part(
         &mut self,
-        front: &Front,
-        next: &Front,
+        over: impl Fn(usize) -> bool,
         (leg, within): (usize, f64),
         going: &mut [bool; LANES],
     ) {
         for lane in 0..LANES {
-            if going[lane] && !next.is_number(lane) {
+            if going[lane] && !over(lane) {
                 going[lane] = false;
                 self.whole[lane] = leg;
-                let index = self.first + leg;
-                self.left[lane] = Some(front.standing(index, within, lane));
+                self.left[lane] = Some(self.standing(leg, within, lane));
             }
         }
     }
@@ -249,14 +251,14 @@ impl Legs {
             for lane in 0..LANES {
                 let mut leg = legs[lane];
                 while leg < self.whole[lane]
-                    && self.begins[leg + 1][lane] <= time
+                    && self.fronts[leg + 1].t[lane] <= time
                 {
                     leg += 1;
                 }
                 legs[lane] = leg;
                 a[lane] = common.pull(&pieces[self.first + leg], lane);
-                u[lane] = self.speeds[leg][lane];
-                after[lane] = time - self.begins[leg][lane];
+                u[lane] = self.fronts[leg].u[lane];
+                after[lane] = time - self.fronts[leg].t[lane];
             }
             let speeds = speeds_after(&a, &common.c, &u, &after);
             for lane in 0..LANES {
@@ -269,46 +271,53 @@ impl Legs {
 }
 
 impl Front {
-    /// Across one piece, as `Force::cross`; and whether a lane met
-    /// something else than the border, where its time is not a number.
+    /// The release: at t = 0 with speed `u`.
+    fn of(u: f64) -> Self {
+        Self { u: [u; LANES], w: [u * u; LANES], t: [0.0; LANES] }
+    }
+
+    fn is_past(&self, time: f64) -> bool {
+        self.t.iter().all(|t| *t > time)
+    }
+
+    /// Goes on over one piece, as `Force::cross`; whether a lane met
+    /// something else than its border.
     #[inline(always)]
-    fn step(&self, piece: &Piece, length: f64, law: &Common) -> (Self, bool) {
-        let x = law.c.map(|c| c * length * 2.0);
-        let spread = expc(&x).map(|e| e * length * 2.0);
-        let mut next = *self;
+    fn step(&mut self, piece: &Piece, length: f64, law: &Common) -> bool {
+        let mut x = [0.0; LANES];
+        for l in 0..LANES {
+            x[l] = law.c[l] * length * 2.0;
+        }
+        let (ratio, _) = expc(&x, false);
         let (mut q, mut z) = ([0.0; LANES], [0.0; LANES]);
         for l in 0..LANES {
+            let spread = ratio[l] * length * 2.0;
             let a = law.pull(piece, l);
-            let decay = 1.0 - law.c[l] * spread[l];
-            next.w[l] = self.w[l] * decay + a * spread[l];
-            next.u[l] = next.w[l].sqrt();
-            q[l] = spread[l] / (next.u[l] + self.u[l] * decay);
+            let decay = 1.0 - law.c[l] * spread;
+            self.w[l] = self.w[l] * decay + a * spread;
+            let u = self.w[l].sqrt();
+            q[l] = spread / (u + self.u[l] * decay);
+            self.u[l] = u;
             z[l] = a * law.c[l] * q[l] * q[l];
         }
-        let slowed = atanhc(&z);
-        let mut met = false;
+        let (slowed, _) = atanhc(&z, false);
         for l in 0..LANES {
-            let crossed = next.w[l] > 0.0 && x[l].abs() <= FAR;
-            let after = if crossed { q[l] * slowed[l] } else { f64::NAN };
-            next.t[l] = self.t[l] + after;
-            met |= next.t[l].is_nan();
+            self.t[l] += q[l] * slowed[l];
         }
-        (next, met)
+        // A loop of its own: together they are not made vectors of.
+        let mut all = true;
+        for l in 0..LANES {
+            all &= (self.w[l] > 0.0) & (x[l].abs() <= FAR);
+            all &= self.t[l] < f64::INFINITY;
+        }
+        !all
     }
 
-    fn is_number(&self, lane: usize) -> bool {
-        !self.t[lane].is_nan()
-    }
-
-    fn standing(
-        &self,
-        index: usize,
-        within: f64,
-        lane: usize,
-    ) -> Standing<Plain> {
-        let pace = Pace { u: self.u[lane].into(), w: self.w[lane].into() };
-        let begins = self.t[lane].into();
-        Standing { index, within: within.into(), begins, pace }
+    /// Whether a lane came over a piece of this length and stands at its
+    /// border.
+    fn is_over(&self, law: &Common, length: f64, lane: usize) -> bool {
+        let x = law.c[lane] * length * 2.0;
+        self.w[lane] > 0.0 && x.abs() <= FAR && self.t[lane] < f64::INFINITY
     }
 
     /// Lanes that have left take on law and state of one that goes on, so
@@ -352,77 +361,6 @@ fn speeds_after(a: &Lanes, c: &Lanes, u: &Lanes, t: &Lanes) -> Lanes {
         speeds[l] = (a[l] * g[l] + u[l]) / (c[l] * u[l] * g[l] + 1.0);
     }
     speeds
-}
-
-/// Whether all lanes lie nearer to 0 than a bound.
-#[inline(always)]
-fn near(x: &Lanes, bound: f64) -> bool {
-    let mut near = true;
-    for x in x {
-        near &= x.abs() < bound;
-    }
-    near
-}
-
-#[inline(always)]
-fn series(x: &Lanes, coefficients: &[f64]) -> Lanes {
-    x.map(|x| polynomial(x, coefficients))
-}
-
-/// `elementary::expc` on each lane; beyond its series by doubling, as
-/// (1 - exp(-2y))/(2y) = f (1 - y f/2) for f = (1 - exp(-y))/y.
-#[inline(always)]
-fn expc(x: &Lanes) -> Lanes {
-    if near(x, 0.04) {
-        series(x, &EXPC[..8])
-    } else if near(x, 0.1) {
-        series(x, &EXPC)
-    } else {
-        doubled_expc(x)
-    }
-}
-
-#[inline(never)]
-fn doubled_expc(x: &Lanes) -> Lanes {
-    let bound = x.iter().fold(0.0, |a: f64, x| a.max(x.abs())).min(FAR);
-    let doublings = (bound / 0.1).log2().ceil().max(0.0) as i32;
-    let mut y = x.map(|x| x * 0.5_f64.powi(doublings));
-    let mut f = series(&y, &EXPC);
-    for _ in 0..doublings {
-        for l in 0..LANES {
-            f[l] *= 1.0 - 0.5 * y[l] * f[l];
-            y[l] *= 2.0;
-        }
-    }
-    f
-}
-
-/// `elementary::atanhc` on each lane.
-#[inline(always)]
-fn atanhc(z: &Lanes) -> Lanes {
-    if near(z, 3e-3) {
-        series(z, &ATANHC[..6])
-    } else if near(z, 0.05) {
-        series(z, &ATANHC)
-    } else {
-        one_by_one(z, elementary::atanhc)
-    }
-}
-
-/// `elementary::tanhc` on each lane.
-#[inline(always)]
-fn tanhc(z: &Lanes) -> Lanes {
-    if near(z, 0.05) {
-        let (sine, cosine) = (series(z, &SINHC), series(z, &COSH));
-        std::array::from_fn(|l| sine[l] / cosine[l])
-    } else {
-        one_by_one(z, elementary::tanhc)
-    }
-}
-
-#[inline(never)]
-fn one_by_one(x: &Lanes, f: fn(Real<Plain>) -> Real<Plain>) -> Lanes {
-    x.map(|x| f(x.into()).value())
 }
 
 #[cfg(test)]
@@ -528,24 +466,5 @@ mod tests {
         let off = Release { distance: number(-1.0), ..release };
         compare(&path, &[0.2, 0.3].map(voellmy), off, &times);
         compare(&path, &[0.2].map(voellmy), release, &[]);
-    }
-
-    #[test]
-    fn series_are_those_of_one_number() {
-        for size in [1e-3, 0.01, 0.06, 0.3, 1.9] {
-            let x: Lanes = std::array::from_fn(|l| size * (l as f64 / 7.0));
-            let one = |f: fn(Number) -> Number, x: f64| f(x.into()).value();
-            for (l, x) in x.iter().enumerate() {
-                let all = [*x; LANES];
-                let exact = one(elementary::expc, *x);
-                // Half an ulp for each doubling.
-                assert!((expc(&all)[l] - exact).abs() < 6e-16, "{x}");
-                let z = x.min(0.9);
-                let exact = one(elementary::atanhc, z);
-                assert_eq!(atanhc(&[z; LANES])[l], exact);
-                let exact = one(elementary::tanhc, -z);
-                assert_eq!(tanhc(&[-z; LANES])[l], exact);
-            }
-        }
     }
 }

@@ -9,13 +9,16 @@ pub mod forces;
 pub mod friction;
 pub mod track;
 
+mod ahead;
 mod changed;
+mod eight;
 mod elementary;
 mod exact;
 mod lanes;
 mod numeric;
 mod resistance;
 mod skim;
+mod slopes;
 mod walk;
 
 pub use changed::sample_changed;

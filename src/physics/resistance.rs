@@ -1,9 +1,10 @@
 //! What resists on every piece alike, and the ground that it acts on.
 
+use super::exact::Force;
 use super::forces::{Moment, Term};
 use super::friction::Rate;
 use super::track::Piece;
-use crate::scalar::{Kind, Real};
+use crate::scalar::{Kind, Plain, Real};
 
 /// A resistance mu load + constant + linear u + c u^2.
 #[derive(Debug, Clone, Copy)]
@@ -63,13 +64,20 @@ impl<K: Kind> Resistance<K> {
 /// along = cos(delta) + mu sin(delta), across = mu cos(delta) - sin(delta).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Even<K: Kind> {
-    along: Real<K>,
-    across: Real<K>,
-    constant: Real<K>,
-    pub(crate) c: Real<K>,
+    pub(super) along: Real<K>,
+    pub(super) across: Real<K>,
+    pub(super) constant: Real<K>,
+    pub(super) c: Real<K>,
 }
 
 impl<K: Kind> Even<K> {
+    /// On the ground as it is; `None` where the rate has more to it.
+    pub(crate) fn untilted(rate: &Rate<K>) -> Option<Self> {
+        let base = Resistance::of(rate).filter(|base| !base.is_linear())?;
+        let Resistance { mu, constant, c, .. } = base;
+        Some(Self { along: Real::new(1.0), across: mu, constant, c })
+    }
+
     /// `None` where the resistance has more to it.
     pub(crate) fn of(from: &Resistance<K>, tilt: &Tilt<K>) -> Option<Self> {
         let mu = from.mu.max(0.0);
@@ -81,10 +89,24 @@ impl<K: Kind> Even<K> {
         })
     }
 
-    /// The force but for the drag c u^2.
+    /// The force on a piece.
     #[inline(always)]
-    pub(crate) fn push(&self, piece: &Piece) -> Real<K> {
-        self.along * piece.pull - self.across * piece.load - self.constant
+    pub(crate) fn on(&self, piece: &Piece) -> Force<K> {
+        let Piece { pull, load, .. } = *piece;
+        let a = self.along * pull - self.across * load - self.constant;
+        Force { a, b: Real::new(0.0), c: self.c }
+    }
+
+    /// The same without derivatives.
+    #[inline(always)]
+    pub(crate) fn values(&self) -> Even<Plain> {
+        let value = |x: Real<K>| Real::new(x.value());
+        Even {
+            along: value(self.along),
+            across: value(self.across),
+            constant: value(self.constant),
+            c: value(self.c),
+        }
     }
 }
 

@@ -1,8 +1,10 @@
 //! Crossing whole pieces of the track: the loop that a simulation spends its
 //! time in. Its state stays in registers.
 
+use super::ahead::Ahead;
 use super::exact::{Force, Pace};
-use super::track::Piece;
+use super::resistance::Even;
+use super::track::{Piece, Track};
 use crate::scalar::{Kind, Real};
 
 /// A mass that enters a piece.
@@ -26,8 +28,11 @@ pub(crate) struct Crossing<K: Kind> {
     pub(crate) ends: f64,
 }
 
+/// The arrival at the far border and the time it takes.
+pub(crate) type Crossed<K> = Option<(Pace<K>, Real<K>)>;
+
 /// No bound on how far and how long a leg is.
-pub(crate) const UNBOUNDED: [f64; 2] = [f64::INFINITY; 2];
+const UNBOUNDED: [f64; 2] = [f64::INFINITY; 2];
 
 /// Crosses whole pieces, under a force without a part linear in the speed,
 /// until one holds `time`: that one, and how it is crossed. Without a crossing
@@ -43,13 +48,12 @@ pub(crate) fn skim<K: Kind>(
     last: usize,
     time: f64,
     [farthest, longest]: [f64; 2],
-    force: impl Fn(&Piece, &Pace<K>, Real<K>) -> Force<K>,
+    mut cross: impl FnMut(&Piece, &Entry<K>) -> (Force<K>, Crossed<K>),
 ) -> (Entry<K>, Option<Crossing<K>>) {
     let Entry { index: first, mut pace, mut begins } = entry;
     for index in first..last {
         let piece = &pieces[index];
-        let force = force(piece, &pace, begins);
-        let crossed = force.cross(pace, Real::new(piece.length));
+        let (force, crossed) = cross(piece, &Entry { index, pace, begins });
         let Some((arrival, after)) = crossed else {
             return (Entry { index, pace, begins }, None);
         };
@@ -67,4 +71,26 @@ pub(crate) fn skim<K: Kind>(
         pace = arrival;
     }
     (Entry { index: last.max(first), pace, begins }, None)
+}
+
+/// The same under a force that is the same on every piece but for its slope,
+/// without bounds.
+#[inline(always)]
+pub(crate) fn skim_even<K: Kind>(
+    track: &Track,
+    even: &Even<K>,
+    ahead: &mut Ahead,
+    entry: Entry<K>,
+    last: usize,
+    time: f64,
+) -> (Entry<K>, Option<Crossing<K>>) {
+    let columns = track.columns();
+    let cross = |piece: &Piece, Entry { index, pace, .. }: &Entry<K>| {
+        let force = even.on(piece);
+        let crossed = ahead
+            .crossing(columns, *index, pace, even, &force)
+            .or_else(|| force.cross(*pace, Real::new(piece.length)));
+        (force, crossed)
+    };
+    skim(track.pieces(), entry, last, time, UNBOUNDED, cross)
 }

@@ -24,6 +24,37 @@ pub struct Piece {
     pub curvature: f64,
 }
 
+/// What the pieces are made of, each number in a row of its own, for work on
+/// several pieces at once.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Columns {
+    pull: Vec<f64>,
+    load: Vec<f64>,
+    length: Vec<f64>,
+}
+
+impl Columns {
+    fn of(pieces: &[Piece]) -> Self {
+        Self {
+            pull: pieces.iter().map(|p| p.pull).collect(),
+            load: pieces.iter().map(|p| p.load).collect(),
+            length: pieces.iter().map(|p| p.length).collect(),
+        }
+    }
+
+    /// Pull, load and length of the eight pieces from `first` on; `None`
+    /// where there are not as many before the endless one.
+    #[inline]
+    pub(super) fn eight(&self, first: usize) -> Option<[&[f64; 8]; 3]> {
+        if first + 8 >= self.length.len() {
+            return None;
+        }
+        let rows = [&self.pull, &self.load, &self.length];
+        let [pull, load, length] = rows.map(|row| row[first..].first_chunk());
+        Some([pull?, load?, length?])
+    }
+}
+
 /// The terrain along the flow line.
 ///
 /// Beyond its last point the track goes on at its last slope, so that a
@@ -40,6 +71,7 @@ pub struct Piece {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Track {
     pieces: Vec<Piece>,
+    columns: Columns,
     x: Vec<f64>,
     z: Vec<f64>,
     origin: f64,
@@ -70,7 +102,7 @@ impl Track {
         }
         set_curvature(&mut pieces);
         let mut track =
-            Self { pieces, x: x.to_vec(), z: z.to_vec(), origin: 0.0 };
+            Self { pieces, x: x.to_vec(), z: z.to_vec(), ..Self::bare() };
         track.extend();
         Ok(track)
     }
@@ -106,7 +138,7 @@ impl Track {
             pieces: vec![piece],
             x: vec![0.0, length * cos],
             z: vec![length * sin, 0.0],
-            origin: 0.0,
+            ..Self::bare()
         };
         track.extend();
         Ok(track)
@@ -194,6 +226,19 @@ impl Track {
             curvature: 0.0,
             ..last
         });
+        self.columns = Columns::of(&self.pieces);
+    }
+
+    /// Of no pieces and no points yet.
+    fn bare() -> Self {
+        let columns = Columns::default();
+        let (pieces, x, z) = (Vec::new(), Vec::new(), Vec::new());
+        Self { pieces, columns, x, z, origin: 0.0 }
+    }
+
+    /// The pieces' numbers, side by side.
+    pub(super) fn columns(&self) -> &Columns {
+        &self.columns
     }
 }
 

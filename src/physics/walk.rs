@@ -5,12 +5,14 @@
 //! the exact family, the one in `numeric` the rest; sampling a flow at given
 //! times and following it to rest are written once, over both.
 
+use super::ahead::Ahead;
 use super::changed::ChangedWalker;
 use super::exact::{End, Force, Pace};
 use super::forces::Forces;
 use super::friction::{Friction, Rate, Site, Varies};
 use super::numeric::{NumericWalker, PLAIN, WITH_DERIVATIVES};
-use super::skim::{Crossing, Entry, UNBOUNDED, skim};
+use super::resistance::Even;
+use super::skim::{Crossing, Entry, skim_even};
 use super::track::{Piece, Track};
 use crate::error::Stop;
 use crate::scalar::{Kind, Real};
@@ -50,11 +52,17 @@ pub(crate) trait Walker<K: Kind> {
     fn ends(&self) -> f64;
     /// Goes on to the next leg.
     fn advance(&mut self) -> Result<(), Stop>;
+    /// Goes on by one leg or by many, but not beyond the one that holds
+    /// `time` \[s\].
+    #[inline(always)]
+    fn leap(&mut self, _time: f64) -> Result<(), Stop> {
+        self.advance()
+    }
     /// Goes on to the leg that holds `time`.
     #[inline(always)]
     fn advance_to(&mut self, time: f64) -> Result<(), Stop> {
         while self.ends() <= time {
-            self.advance()?;
+            self.leap(time)?;
         }
         Ok(())
     }
@@ -204,7 +212,7 @@ fn follow<K: Kind>(
         if walker.is_endless() {
             return Ok(None);
         }
-        walker.advance()?;
+        walker.leap(f64::INFINITY)?;
     }
     Ok(None)
 }
@@ -241,13 +249,15 @@ pub(crate) fn first_piece<K: Kind>(
 
 /// The walker of the exact family.
 struct ExactWalker<'a, K: Kind, L> {
+    track: &'a Track,
     pieces: &'a [Piece],
     depth: f64,
     law: &'a L,
     /// The law's rates, if they are the same everywhere.
     uniform: Option<Rate<K>>,
     /// The same, if moreover a leg can only end at a border or at rest.
-    skims: Option<Rate<K>>,
+    even: Option<Even<K>>,
+    ahead: Ahead,
     index: usize,
     /// How far into its piece the leg begins [m].
     within: Real<K>,
@@ -291,14 +301,13 @@ impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
         let uniform = (law.varies() == Varies::Nowhere)
             .then(|| law.rate(&site(&pieces[index], path.depth), zero));
         let mut walker = Self {
+            track: path.track,
             pieces,
             depth: path.depth,
             law,
             uniform,
-            skims: uniform.filter(|rate| {
-                rate.pressed.is_constantly_zero()
-                    && rate.linear.is_constantly_zero()
-            }),
+            even: uniform.as_ref().and_then(Even::untilted),
+            ahead: Ahead::default(),
             index,
             within,
             begins,
@@ -457,16 +466,13 @@ impl<K: Kind, L: Friction<K>> Walker<K> for ExactWalker<'_, K, L> {
     }
 
     #[inline(always)]
-    fn advance_to(&mut self, time: f64) -> Result<(), Stop> {
-        while self.ends <= time {
-            match (self.skims, self.end) {
-                (Some(rate), End::Leaves { arrival, after }) => {
-                    self.skim(time, &rate, arrival, after)?;
-                }
-                _ => self.advance()?,
+    fn leap(&mut self, time: f64) -> Result<(), Stop> {
+        match (self.even, self.end) {
+            (Some(even), End::Leaves { arrival, after }) => {
+                self.skim(time, &even, arrival, after)
             }
+            _ => self.advance(),
         }
-        Ok(())
     }
 
     #[inline(always)]
@@ -499,22 +505,16 @@ impl<K: Kind, L: Friction<K>> ExactWalker<'_, K, L> {
     fn skim(
         &mut self,
         time: f64,
-        rate: &Rate<K>,
+        even: &Even<K>,
         arrival: Pace<K>,
         after: Real<K>,
     ) -> Result<(), Stop> {
         let begins = self.begins + after;
         let entry = Entry { index: self.index + 1, pace: arrival, begins };
         let last = self.pieces.len() - 1;
-        let c = rate.quadratic + rate.growth;
-        let b = Real::new(0.0);
-        let force = |piece: &Piece, _: &Pace<K>, _: Real<K>| Force {
-            a: piece.pull - rate.mu * piece.load - rate.constant,
-            b,
-            c,
-        };
+        let ahead = &mut self.ahead;
         let (entry, crossing) =
-            skim(self.pieces, entry, last, time, UNBOUNDED, force);
+            skim_even(self.track, even, ahead, entry, last, time);
         self.within = Real::new(0.0);
         let Some(Crossing { force, arrival, after, ends }) = crossing else {
             return self.land(entry.index, entry.pace, entry.begins);

@@ -1,0 +1,159 @@
+//! Eight pieces crossed at once, ahead of the motion that asks for them.
+//!
+//! On the way over a border only the squared speed has to be known piece
+//! after piece, w1 = w0 e + a E (see `exact`). What costs time, the spread E
+//! before it and the roots and travel times after it, is the same for each
+//! piece and is worked out for eight of them as one vector. What comes out
+//! is what `Force::cross` gives, to round-off.
+
+#![allow(
+    clippy::needless_range_loop,
+    reason = "loops over an index become vectors, chains of iterators do not"
+)]
+
+use super::eight::{EIGHT, Eight, atanhc, expc};
+use super::exact::{FAR, Force, Pace};
+use super::resistance::Even;
+use super::slopes::{Slopes, Solved};
+use super::track::Columns;
+use crate::scalar::{Kind, Plain, Real};
+
+/// The crossings of up to eight pieces that follow each other.
+#[derive(Debug, Default)]
+pub(super) struct Ahead {
+    first: usize,
+    /// How many of the pieces are left over their border.
+    whole: usize,
+    /// Speed [m/s] and its square at the far borders.
+    u: Eight,
+    w: Eight,
+    /// The travel times [s].
+    after: Eight,
+    /// How they change, for numbers with derivatives.
+    slopes: Slopes,
+}
+
+impl Ahead {
+    /// The arrival at the far border of a piece, and the time it takes;
+    /// `None` where its end is not known to be a border. Pieces have to be
+    /// asked for one after the other, of one motion; `force` is what `even`
+    /// is on this one.
+    #[inline(always)]
+    pub(super) fn crossing<K: Kind>(
+        &mut self,
+        columns: &Columns,
+        index: usize,
+        pace: &Pace<K>,
+        even: &Even<K>,
+        force: &Force<K>,
+    ) -> Option<(Pace<K>, Real<K>)> {
+        let mut at = index.wrapping_sub(self.first);
+        if at >= self.whole {
+            let entered = (pace.u.value(), pace.w.value());
+            self.cross::<K>(columns, index, entered, &even.values());
+            at = 0;
+        }
+        if at >= self.whole.min(EIGHT) {
+            return None;
+        }
+        let values = [self.u[at], self.w[at], self.after[at]];
+        if K::DIRECTIONS > 0 {
+            return Some(self.slopes.crossing(at, values, pace, force));
+        }
+        let [u, w, after] = values.map(Real::new);
+        Some((Pace { u, w }, after))
+    }
+
+    #[inline(never)]
+    fn cross<K: Kind>(
+        &mut self,
+        columns: &Columns,
+        first: usize,
+        (u, w): (f64, f64),
+        even: &Even<Plain>,
+    ) {
+        (self.first, self.whole) = (first, 0);
+        let Some([pull, load, length]) = columns.eight(first) else { return };
+        let [along, across, constant, c] =
+            [even.along, even.across, even.constant, even.c].map(Real::value);
+        let (mut x, mut a) = ([0.0; EIGHT], [0.0; EIGHT]);
+        for i in 0..EIGHT {
+            x[i] = c * length[i] * 2.0;
+            a[i] = along * pull[i] - across * load[i] - constant;
+        }
+        let sloped = K::DIRECTIONS > 0;
+        let (mut spread, mut spread_c) = expc(&x, sloped);
+        let (mut decay, mut gain) = ([0.0; EIGHT], [0.0; EIGHT]);
+        for i in 0..EIGHT {
+            spread[i] = spread[i] * length[i] * 2.0;
+            spread_c[i] = spread_c[i] * length[i] * length[i] * 4.0;
+            decay[i] = 1.0 - c * spread[i];
+            gain[i] = a[i] * spread[i];
+        }
+        let (mut before, mut entered) = (w, [w; EIGHT]);
+        for i in 0..EIGHT {
+            entered[i] = before;
+            before = before * decay[i] + gain[i];
+            self.w[i] = before;
+        }
+        let speeds = self.set_speeds(u);
+        let (mut q, mut z) = ([0.0; EIGHT], [0.0; EIGHT]);
+        for i in 0..EIGHT {
+            q[i] = spread[i] / (speeds[i + 1] + speeds[i] * decay[i]);
+            z[i] = a[i] * c * q[i] * q[i];
+        }
+        let (slowed, bent) = atanhc(&z, sloped);
+        for i in 0..EIGHT {
+            self.after[i] = q[i] * slowed[i];
+        }
+        self.whole = self.leading(&x);
+        if sloped {
+            let length = *length;
+            self.slopes.set(&Solved {
+                length,
+                a,
+                c,
+                spread,
+                spread_c,
+                decay,
+                entered,
+                speeds,
+                q,
+                z,
+                bent,
+            });
+        }
+    }
+
+    /// The speeds at all nine borders.
+    #[inline(always)]
+    fn set_speeds(&mut self, u: f64) -> [f64; EIGHT + 1] {
+        let mut speeds = [u; EIGHT + 1];
+        for i in 0..EIGHT {
+            speeds[i + 1] = self.w[i].sqrt();
+            self.u[i] = speeds[i + 1];
+        }
+        speeds
+    }
+
+    /// How many crossings there are before something else happens.
+    #[inline(always)]
+    fn leading(&self, x: &Eight) -> usize {
+        let mut all = true;
+        for i in 0..EIGHT {
+            all &= (self.w[i] > 0.0) & (x[i].abs() <= FAR);
+            all &= self.after[i] < f64::INFINITY;
+        }
+        if all { EIGHT } else { self.leading_some(x) }
+    }
+
+    /// Beyond a stop nothing is a number.
+    #[cold]
+    fn leading_some(&self, x: &Eight) -> usize {
+        let crossed = |i: &usize| {
+            let moves = self.w[*i] > 0.0 && x[*i].abs() <= FAR;
+            moves && self.after[*i] < f64::INFINITY
+        };
+        (0..EIGHT).take_while(crossed).count()
+    }
+}
