@@ -239,7 +239,7 @@ pub const BACKENDS: &[Entry] = &[
     Entry {
         name: "laplace-mixture",
         about: "importance sampling by Laplace's approximations of all modes",
-        make: |_| Box::new(LaplaceMixture::default()),
+        make: |effort| Box::new(LaplaceMixture::of_effort(effort)),
     },
     Entry {
         name: "bridge",

@@ -17,7 +17,7 @@ use crate::infer::proposal::{Component, Mixture};
 use crate::infer::schedule::Schedule;
 use crate::infer::search::{SearchSpace, components, outlook};
 use crate::infer::temper::tempered;
-use crate::infer::{Backend, Inference, Progress};
+use crate::infer::{Backend, Effort, Inference, Progress};
 use crate::model::Posterior;
 use crate::seed::Seed;
 
@@ -58,6 +58,18 @@ impl LaplaceMixture {
     /// With a search space of one's own.
     pub fn within(space: SearchSpace) -> Self {
         Self { space, ..Self::default() }
+    }
+
+    /// As many draws as fit an effort, for the estimate and for learning.
+    pub fn of_effort(effort: &Effort) -> Self {
+        let draws = (effort.chains * effort.draws / 2).max(1000);
+        let schedule = Schedule {
+            learning_draws: (draws / 10).clamp(600, 4000),
+            judging_draws: (draws / 5).clamp(2000, 8000),
+            final_draws: (draws, draws),
+            ..Schedule::default()
+        };
+        Self { schedule, ..Self::default() }
     }
 
     /// The same at a first look, which says whether more is worth it.
