@@ -9,8 +9,9 @@ pub(crate) struct Schedule {
     /// How many of the held places, none next to another, are climbed further
     /// after one step each has said what they promise.
     pub(crate) promising: usize,
-    /// From how many of these a climb of all coordinates starts; most end soon
-    /// at a peak that is known.
+    /// From how many of these a climb of all coordinates starts, at the most;
+    /// it is a quarter of all places, or sixteen. Most end soon at a peak that
+    /// is known.
     pub(crate) climbed: usize,
     /// From how many of the highest peaks profiles are made, and how far below
     /// the highest these may be, in ln.
@@ -87,7 +88,7 @@ impl Default for Schedule {
     fn default() -> Self {
         Self {
             promising: 200,
-            climbed: 120,
+            climbed: 100,
             profiled: 4,
             profiled_below: 4.0,
             negligible: 10.0,
@@ -98,13 +99,13 @@ impl Default for Schedule {
             good_share: 0.1,
             ample_share: 0.25,
             judging_draws: 2000,
-            judgements: 3,
+            judgements: 6,
             estimates: 2,
             moved: 200,
             reached_share: 0.05,
             error: 0.05,
             final_draws: (1000, 6000),
-            particles: 1000,
+            particles: 800,
         }
     }
 }

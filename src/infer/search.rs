@@ -171,7 +171,8 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
             .par_iter_mut()
             .try_for_each(|one| one.climb_on(posterior))?;
         by_height(&mut promising);
-        let best = promising.iter().take(self.schedule.climbed);
+        let most = (places_of(space) / 4).max(LEAST_CLIMBED);
+        let best = promising.iter().take(most.min(self.schedule.climbed));
         let best: Vec<_> = best.map(|one| one.peak.line.clone()).collect();
         for start in best {
             self.climb(start.as_slice())?;
@@ -186,12 +187,18 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
     /// A density that bends where recorded times pass the borders of pieces
     /// stops a climb short, and strides along a coordinate pass over that.
     fn profile(&mut self) -> Result<Vec<Component>> {
-        let mut met = profiles(self.posterior, &self.peaks, self.schedule)?;
+        let alone = Schedule { profiled: 1, ..*self.schedule };
         for _ in 0..HIGHER {
-            let Some(higher) = met.higher else { break };
-            self.climb(higher.line.as_slice())?;
-            met = profiles(self.posterior, &self.peaks, self.schedule)?;
+            let met = profiles(self.posterior, &self.peaks, &alone)?;
+            match met.higher {
+                Some(higher) => self.climb(higher.line.as_slice())?,
+                None if self.schedule.profiled == 1 => {
+                    return Ok(met.components);
+                }
+                None => break,
+            }
         }
+        let met = profiles(self.posterior, &self.peaks, self.schedule)?;
         Ok(met.components)
     }
 
@@ -209,6 +216,14 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
         all.truncate(self.schedule.components);
         Ok(all)
     }
+}
+
+/// From how many held places a climb starts at the least.
+const LEAST_CLIMBED: usize = 16;
+
+/// How many places are held.
+fn places_of(space: &SearchSpace) -> usize {
+    space.grids.iter().map(|grid| grid.places.len()).sum()
 }
 
 /// How often profiles may lead higher.

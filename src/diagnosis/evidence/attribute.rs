@@ -40,7 +40,7 @@ const PRIOR_STARTS: usize = 4;
 
 /// What is so far below the best, in ln, is estimated roughly: it has less
 /// than a hundred-thousandth of the probability.
-const IRRELEVANT: f64 = 11.0;
+const IRRELEVANT: f64 = 10.5;
 
 /// How much higher, in ln, an evidence may come to be whose proposal has poor
 /// weights yet.

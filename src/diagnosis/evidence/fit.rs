@@ -107,9 +107,8 @@ pub(crate) fn prospect_above<P: Program>(
     prospect(program, mechanisms, backend, seed.child(1))
 }
 
-/// How much more, in ln, a thorough look may find than a first one: 5 was the
-/// most that a mode passed over had.
-pub(crate) const UNSEEN: f64 = 6.0;
+/// How much more, in ln, a thorough look may find than a first one.
+pub(crate) const UNSEEN: f64 = 4.0;
 
 /// Searches a program with mechanisms, and learns where it lies.
 ///

@@ -35,11 +35,11 @@ use tangent::Cells;
 pub const CELLS: usize = 40;
 /// How many draws of the process and the model's own parameters are made.
 const EFFORT: Effort =
-    Effort { learning: 80, rounds: 4, last: (100, 600), error: 0.1 };
+    Effort { learning: 60, rounds: 3, last: (80, 400), error: 0.1 };
 /// The same along an axis whose force is far less likely than along another,
 /// by so much in ln.
 const FEW: Effort = Effort { last: (60, 60), ..EFFORT };
-const FAR: f64 = 5.0;
+const FAR: f64 = 3.0;
 /// What a force of free form is called, and what it says.
 pub(crate) const NOUN: &str =
     "a force that no mechanism of the catalogue describes";
