@@ -46,14 +46,15 @@ fn the_drag_of_the_air_is_found_in_the_coast_down() {
 }
 
 #[test]
-fn nothing_is_missing_once_the_drag_is_there_but_correlation() {
+fn little_is_left_once_the_drag_is_in_the_model() {
     let file = io::coastdown(&Laws::default()).unwrap();
     let found = diagnosed(file, None);
     let total: f64 = found.mechanisms.iter().map(|m| m.probability).sum();
     assert!((total - 1.0).abs() < 1e-9, "{total}");
-    let nothing = [Verdict::Adequate, Verdict::Errors];
-    assert!(nothing.contains(&found.verdict), "{:?}", found.verdict);
-    assert!(found.mismatch.is_empty(), "{:?}", found.mismatch);
+    // 1.20 m/s without the drag. What is left is small and not chance: the
+    // errors of neighbouring values go together.
+    assert!(found.improvement.rmse.before < 0.1);
+    assert!(found.baseline.ljung_box_p < 0.01);
     assert!(found.mechanisms.iter().all(|m| m.name != "turbulent-drag"));
 }
 

@@ -259,12 +259,13 @@ fn states(
     states
 }
 
-/// The acceleration is read off the speeds, a hundredth of a second apart.
+/// The acceleration is read off the speeds, a thousandth of a second to either
+/// side: within one piece of the track.
 /// Forces that vary steadily are stairs of a hundredth of the run or less,
 /// half of which is up to 5 % of such a force here.
 #[test]
 fn every_force_is_what_its_formula_says() {
-    let (track, half) = (bent(), 0.01);
+    let (track, half) = (bent(), 0.001);
     for (label, values, added) in FORCES {
         let change = change(label, values);
         for time in [3.03, 6.03, 9.03] {

@@ -134,7 +134,7 @@ pub(super) fn taught(
     if round < schedule.reweighting_rounds {
         return reweighted();
     }
-    if round % 2 == 0 {
+    if round.is_multiple_of(2) {
         let added = Mixture::fit(&rows, &weights, ADDED, &mut seed.rng());
         return added
             .map_or_else(reweighted, |added| added.beside(mixture.clone()));

@@ -201,7 +201,7 @@ mod tests {
     #[test]
     fn what_is_poor_is_told_once_with_the_worst() {
         let fine = summary("a", 1.01, 400.0, 400.0);
-        assert!(convergence(&[fine.clone()], 4).is_empty());
+        assert!(convergence(std::slice::from_ref(&fine), 4).is_empty());
         let b = summary("b", 1.02, 400.0, 400.0);
         let c = summary("c", 1.3, 900.0, 399.0);
         let said = convergence(&[fine.clone(), b, c], 4);

@@ -101,7 +101,7 @@ impl Default for Schedule {
             judging_draws: 2000,
             judgements: 6,
             estimates: 2,
-            moved: 200,
+            moved: 300,
             reached_share: 0.05,
             error: 0.05,
             final_draws: (1000, 6000),

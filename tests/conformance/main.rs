@@ -40,7 +40,6 @@ const CANNOT: &[(&str, &str, Instead, &str)] = &[
     ("reciprocal", "funnel", Warns, "it stands on the random walk"),
     ("smc", "funnel", Warns, "one scale of moves for mouth and neck"),
     ("bridge", "funnel", Warns, "it stands on the particles of smc"),
-    ("laplace-mixture", "eight_schools", Warns, "no mixture of few normals"),
     ("laplace-mixture", "kidscore_momiq", Refuses, "its priors are improper"),
     ("quadrature", "arK", Refuses, "it has more than four parameters"),
     ("quadrature", "eight_schools", Refuses, "more than four parameters"),

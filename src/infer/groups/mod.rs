@@ -66,7 +66,7 @@ pub struct Grouped<'a> {
 /// How many draws of what is in common are made: each costs a climb and dozens
 /// of draws in every group.
 const EFFORT: Effort =
-    Effort { learning: 200, rounds: 6, last: (300, 1200), error: 0.06 };
+    Effort { learning: 200, rounds: 6, last: (300, 3000), error: 0.03 };
 
 /// The effective share at which a proposal for all coordinates at once does:
 /// nested, a draw costs dozens of times as much.
