@@ -7,7 +7,7 @@ model! {
 
     mean ~ Normal(0.0, 1.0);
     slope[2] ~ Normal(0.0, 1.0);
-    let steeper = slope.iter().map(|s| &2.0 * s).sum::<couloir::Real<_>>();
+    let steeper = slope.iter().map(|s| 2.0 * s).sum::<couloir::Real<_>>();
     likelihood { for (y, x) in many.iter().zip(at) { y ~ Normal(mean + steeper * x, 1.0); } }
 }
 
