@@ -16,14 +16,14 @@ use crate::seed::{Rng, Seed};
 
 /// How many forces are drawn at a place: half of them mirror the others at
 /// the best one, so that what is odd about it cancels.
-const FORCES: usize = 32;
+const FORCES: usize = 24;
 /// How many of these are kept.
 const KEPT: usize = 8;
 /// Degrees of freedom of what they are drawn from: somewhat heavier tails than
 /// the normal ones.
 const FREEDOM: f64 = 10.0;
 /// From how many looks a start is taken.
-const NEAREST: usize = 4;
+const NEAREST: usize = 3;
 /// By how much, in ln, the weight of a draw must exceed what a normal
 /// approximation holds to show that there is better, and how often that is
 /// looked for.

@@ -35,7 +35,7 @@ use tangent::Cells;
 pub const CELLS: usize = 40;
 /// How many draws of the process and the model's own parameters are made.
 const EFFORT: Effort =
-    Effort { learning: 60, rounds: 3, last: (300, 800), error: 0.1 };
+    Effort { learning: 60, rounds: 3, last: (150, 600), error: 0.1 };
 /// The same along an axis whose force is far less likely than along another,
 /// by so much in ln.
 const FEW: Effort = Effort { last: (60, 60), ..EFFORT };
