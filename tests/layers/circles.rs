@@ -66,7 +66,7 @@ fn spread(tree: &str) -> Vec<String> {
 }
 
 /// From the crate's root; `None` for other crates.
-fn absolute(module: &[String], path: Names) -> Option<Names> {
+fn absolute(module: &[String], path: &[String]) -> Option<Names> {
     let supers = path.iter().take_while(|s| *s == "super").count();
     let own = module.get(..module.len().checked_sub(supers)?)?;
     match path[0].as_str() {
@@ -126,7 +126,7 @@ impl File {
             Some(last) if last == "self" => path[..path.len() - 1].to_vec(),
             _ => path,
         };
-        let absolute = absolute(module, path.clone());
+        let absolute = absolute(module, &path);
         let folder = root().join("src").join(module.join("/"));
         let below = folder.join(format!("{}.rs", path[0])).exists()
             || folder.join(&path[0]).is_dir();
@@ -192,7 +192,7 @@ fn paths(file: &File) -> Vec<Names> {
     let mut found = Vec::new();
     for word in words.filter(|w| w.contains("::") && !w.starts_with("::")) {
         let path = names(word.trim_end_matches(':'));
-        if let Some(path) = absolute(&file.module, path.clone()) {
+        if let Some(path) = absolute(&file.module, &path) {
             found.push(path);
             continue;
         }
