@@ -4,7 +4,9 @@
 //! a smooth motion hardly has. For errors with the autocorrelation phi^k and
 //! the variance s2 their mean square at the lag h is
 //!
-//!     D_h = 2 s2 (1 - phi^h)(3 - phi^h),
+//! ```text
+//! D_h = 2 s2 (1 - phi^h)(3 - phi^h),
+//! ```
 //!
 //! so that D_h/D_1 tells phi, and D_1 then s2. The sum over a duration T in
 //! steps dt has the variance s2 T dt (1 + phi)/(1 - phi).

@@ -33,7 +33,7 @@ pub enum Proposal {
 ///
 /// ```
 /// use couloir::infer::{Effort, MetropolisHastings};
-/// let effort = Effort { chains: 3, draws: 25_000, warmup: 25_000 };
+/// let effort = Effort::new().chains(3).draws(25_000).warmup(25_000);
 /// let as_in_the_paper = MetropolisHastings::random_walk(&effort);
 /// ```
 #[derive(Debug, Clone, PartialEq)]

@@ -32,7 +32,7 @@ use crate::seed::{Rng, Seed};
 ///
 /// ```
 /// use couloir::infer::{Effort, Nuts};
-/// let effort = Effort { chains: 4, draws: 1000, warmup: 1000 };
+/// let effort = Effort::new().chains(4).draws(1000).warmup(1000);
 /// let careful = Nuts { target: 0.98, ..Nuts::of_effort(&effort) };
 /// assert_eq!(careful.max_depth, 10);
 /// ```
