@@ -1,8 +1,10 @@
 //! Teaching a proposal where the posterior lies: rounds of importance draws
-//! that reweight its components, then add some, until their weights are good
-//! and draws that are moved on reach nothing that it misses.
+//! that first reweight its components. Then draws are moved on by a Markov
+//! kernel that leaves the posterior invariant. Where they come to shows what
+//! the proposal misses, and components fitted there mend it, until its weights
+//! are good and nothing is missed.
 
-use super::check::missed;
+use super::check::Moved;
 use super::proposal::{Base, Mixture, Particle, population};
 use super::schedule::Schedule;
 use super::weights::{cut, log_mean_weight, quality};
@@ -10,137 +12,114 @@ use crate::error::Result;
 use crate::model::Posterior;
 use crate::seed::Seed;
 
-/// The most components that a round adds by a fit.
-const ADDED: usize = 4;
+/// The most components that a round adds.
+const FITTED: usize = 6;
 
-/// A proposal that learns no more.
+/// A proposal, and how good it is.
 #[derive(Debug, Clone)]
 pub(crate) struct Frozen {
     pub(crate) mixture: Mixture,
-    /// About ln of the evidence, by these.
+    /// About ln of the evidence, by the last draws.
     pub(crate) log: f64,
-    /// By how much draws that were moved on say that the weights' second
-    /// moment exceeds the square of their mean.
+    /// By how much its draws say that the weights' second moment exceeds the
+    /// square of their mean, or those that were moved on.
     pub(crate) excess: f64,
     /// Whether the weights are good and nothing was missed.
     pub(crate) good: bool,
+    /// How many rounds it has learned from.
+    pub(crate) round: u64,
 }
 
-/// Learns from rounds of draws, and freezes.
-///
-/// # Errors
-/// What no other parameter values would mend.
-pub(super) fn adapted(
-    posterior: &Posterior<'_>,
-    mut mixture: Mixture,
-    schedule: &Schedule,
-    seed: Seed,
-) -> Result<Frozen> {
-    let mut frozen = None;
-    for round in 0..schedule.rounds {
-        let seed = seed.child(round);
-        let base = Base::Mixture(mixture.clone());
-        let count = schedule.learning_draws;
-        let found = population(posterior, &base, count, seed.child(0))?;
-        let quality = quality(&found);
-        let log = log_mean_weight(&found);
-        let good = schedule.is_good(quality);
-        let mut state = Frozen {
-            mixture: mixture.clone(),
-            log,
-            excess: 1.0 / quality.0 - 1.0,
-            good,
-        };
-        if good {
-            let seed = seed.child(3);
-            let checked = missed(posterior, &mixture, &found, schedule, seed)?;
-            state.excess = state.excess.max(checked.excess);
-            match checked.mended {
-                None => return Ok(state),
-                Some(wider) => mixture = wider,
-            }
-            state.good = false;
-        } else {
-            let seed = seed.child(2);
-            mixture = taught(&mixture, &found, round, schedule, seed);
-        }
-        frozen = Some(state);
+impl Frozen {
+    /// A proposal that has learned nothing yet.
+    pub(super) fn new(mixture: Mixture) -> Self {
+        let (log, excess) = (f64::NEG_INFINITY, f64::INFINITY);
+        Self { mixture, log, excess, good: false, round: 0 }
     }
-    // What the last round taught was not looked at: it goes on from there.
-    let last =
-        frozen.map(|state| Frozen { mixture: mixture.clone(), ..state });
-    Ok(last.unwrap_or(Frozen {
-        mixture,
-        log: f64::NEG_INFINITY,
-        excess: f64::INFINITY,
-        good: false,
-    }))
-}
 
-/// The same, judged by more draws than it learned from; it learns from these
-/// where they say that it is poor.
-///
-/// # Errors
-/// As [`adapted`].
-pub(super) fn judged(
-    posterior: &Posterior<'_>,
-    mut frozen: Frozen,
-    schedule: &Schedule,
-    seed: Seed,
-) -> Result<Frozen> {
-    for time in 0..schedule.judgements {
-        let seed = seed.child(time);
-        let base = Base::Mixture(frozen.mixture.clone());
-        let count = schedule.judging_draws;
-        let found = population(posterior, &base, count, seed.child(0))?;
-        let quality = quality(&found);
-        let wider = if schedule.is_good(quality) {
-            let mixture = &frozen.mixture;
-            let seed = seed.child(1);
-            let checked = missed(posterior, mixture, &found, schedule, seed)?;
-            frozen.excess = checked.excess.max(1.0 / quality.0 - 1.0);
-            frozen.log = log_mean_weight(&found);
-            frozen.good = checked.mended.is_none();
-            checked.mended
-        } else {
-            frozen.good = false;
-            let late = schedule.reweighting_rounds + time;
-            let mixture = &frozen.mixture;
-            Some(taught(mixture, &found, late, schedule, seed.child(2)))
-        };
-        match wider {
-            None => return Ok(frozen),
-            Some(mixture) => frozen.mixture = mixture,
+    /// Goes on learning, for so many rounds in all, unless it is good before.
+    ///
+    /// # Errors
+    /// What no other parameter values would mend.
+    pub(super) fn learned(
+        mut self,
+        posterior: &Posterior<'_>,
+        schedule: &Schedule,
+        rounds: u64,
+        seed: Seed,
+    ) -> Result<Self> {
+        while self.round < rounds && !self.good {
+            let seed = seed.child(self.round);
+            let base = Base::Mixture(self.mixture.clone());
+            let count = schedule.draws(self.round);
+            let found = population(posterior, &base, count, seed.child(0))?;
+            let quality = quality(&found);
+            self.log = log_mean_weight(&found);
+            self.excess = 1.0 / quality.0 - 1.0;
+
+            self = if self.round < schedule.reweighting_rounds {
+                self.reweighted(&found)
+            } else {
+                self.moved_on(posterior, &found, schedule, seed.child(1))?
+            };
+            self.round += 1;
         }
+        Ok(self)
     }
-    Ok(frozen)
+
+    /// The same with components that weigh what draws say they hold.
+    fn reweighted(mut self, found: &[Particle]) -> Self {
+        self.mixture = reweighted(&self.mixture, found);
+        self
+    }
+
+    /// Judged by draws and by where these are moved on to; unless it is good,
+    /// with components fitted to the latter.
+    pub(super) fn moved_on(
+        mut self,
+        posterior: &Posterior<'_>,
+        found: &[Particle],
+        schedule: &Schedule,
+        seed: Seed,
+    ) -> Result<Self> {
+        let mixture = &self.mixture;
+        let moved =
+            Moved::on(posterior, mixture, found, schedule, seed.child(0))?;
+        self.excess = self.excess.max(moved.excess);
+        self.good =
+            schedule.is_good(quality(found)) && !moved.met_more(schedule);
+        if !self.good {
+            self.mixture = widened(mixture, &moved, seed.child(1));
+        }
+        Ok(self)
+    }
 }
 
-/// What a round of draws teaches: in the first ones how much each component
-/// holds, then where it is far too low, and which components the heavy draws
-/// make.
-pub(super) fn taught(
+/// A mixture with components that weigh what weighted draws say they hold.
+pub(super) fn reweighted(mixture: &Mixture, found: &[Particle]) -> Mixture {
+    let places = found.iter().map(|particle| &particle.z[..]);
+    mixture.reweighted(places.zip(cut(found)))
+}
+
+/// A mixture with components where weighted draws say that it is far too low.
+pub(super) fn mended(mixture: &Mixture, found: &[Particle]) -> Mixture {
+    let log = log_mean_weight(found);
+    let rows: Vec<Vec<f64>> = found.iter().map(|p| p.z.clone()).collect();
+    let targets: Vec<f64> =
+        found.iter().map(|p| p.log_target() - log).collect();
+    let mended = mixture.mended(&rows, &cut(found), &targets);
+    mended.unwrap_or_else(|| reweighted(mixture, found))
+}
+
+/// A mixture beside one that is fitted to draws that were moved on.
+pub(super) fn widened(
     mixture: &Mixture,
-    found: &[Particle],
-    round: u64,
-    schedule: &Schedule,
+    moved: &Moved,
     seed: Seed,
 ) -> Mixture {
-    let weights = cut(found);
-    let rows: Vec<Vec<f64>> = found.iter().map(|p| p.z.clone()).collect();
-    let reweighted = || {
-        mixture.reweighted(rows.iter().map(Vec::as_slice).zip(weights.clone()))
-    };
-    if round < schedule.reweighting_rounds {
-        return reweighted();
-    }
-    if round.is_multiple_of(2) {
-        let added = Mixture::fit(&rows, &weights, ADDED, &mut seed.rng());
-        return added
-            .map_or_else(reweighted, |added| added.beside(mixture.clone()));
-    }
-    let scale = log_mean_weight(found);
-    let targets: Vec<f64> =
-        found.iter().map(|p| p.log_target() - scale).collect();
-    mixture.mended(&rows, &weights, &targets).unwrap_or_else(reweighted)
+    let even = vec![1.0 / moved.places.len() as f64; moved.places.len()];
+    Mixture::fit(&moved.places, &even, FITTED, &mut seed.rng()).map_or_else(
+        || mixture.clone(),
+        |fitted| fitted.beside(mixture.clone()),
+    )
 }

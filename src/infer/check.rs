@@ -17,39 +17,37 @@ use crate::model::Posterior;
 use crate::seed::Seed;
 
 /// What draws that were moved on say of a proposal.
-pub(super) struct Checked {
+pub(super) struct Moved {
     /// The relative variance of its weights, by them.
     pub(super) excess: f64,
-    /// The proposal with components where it is too low, if it missed any.
-    pub(super) mended: Option<Mixture>,
+    /// Where they came to.
+    pub(super) places: Vec<Vec<f64>>,
 }
 
-/// Moves weighted draws of a mixture on, and looks at it where they come to.
-///
-/// # Errors
-/// What no other parameter values would mend.
-pub(super) fn missed(
-    posterior: &Posterior<'_>,
-    mixture: &Mixture,
-    found: &[Particle],
-    schedule: &Schedule,
-    seed: Seed,
-) -> Result<Checked> {
-    let count = schedule.moved;
-    let base = Base::Mixture(mixture.clone());
-    let moved = moved(posterior, base, found, count, seed)?;
-    let log_evidence = log_mean_weight(found);
-    let second = (log_mean_weight(&moved) - log_evidence).exp();
-    let excess = (second - 1.0).max(0.0);
-    if second < 1.0 / schedule.reached_share {
-        return Ok(Checked { excess, mended: None });
+impl Moved {
+    /// Moves weighted draws of a mixture on, and looks at it where they come
+    /// to.
+    ///
+    /// # Errors
+    /// What no other parameter values would mend.
+    pub(super) fn on(
+        posterior: &Posterior<'_>,
+        mixture: &Mixture,
+        found: &[Particle],
+        schedule: &Schedule,
+        seed: Seed,
+    ) -> Result<Self> {
+        let base = Base::Mixture(mixture.clone());
+        let moved = moved(posterior, base, found, schedule.moved, seed)?;
+        let second = log_mean_weight(&moved) - log_mean_weight(found);
+        let places = moved.into_iter().map(|p| p.z).collect();
+        Ok(Self { excess: (second.exp() - 1.0).max(0.0), places })
     }
-    let even = vec![1.0 / count as f64; count];
-    let targets: Vec<f64> =
-        moved.iter().map(|p| p.log_target() - log_evidence).collect();
-    let places: Vec<Vec<f64>> = moved.into_iter().map(|p| p.z).collect();
-    let mended = mixture.mended(&places, &even, &targets);
-    Ok(Checked { excess, mended })
+
+    /// Whether the mixture misses a place that they came to.
+    pub(super) fn met_more(&self, schedule: &Schedule) -> bool {
+        self.excess + 1.0 > 1.0 / schedule.reached_share
+    }
 }
 
 #[cfg(test)]
@@ -58,6 +56,7 @@ mod tests {
 
     use super::*;
     use crate::error::Outcome;
+    use crate::infer::adapt::widened;
     use crate::infer::proposal::population;
     use crate::infer::weights::quality;
     use crate::model::{Label, Number, Program, Run};
@@ -100,8 +99,9 @@ mod tests {
         let wider = |mixture: &Mixture, found: &[Particle]| {
             let schedule = Schedule::default();
             let seed = Seed::new(2);
-            let checked = missed(&posterior, mixture, found, &schedule, seed);
-            checked.unwrap().mended
+            let moved = Moved::on(&posterior, mixture, found, &schedule, seed);
+            let moved = moved.unwrap();
+            moved.met_more(&schedule).then(|| widened(mixture, &moved, seed))
         };
         let both = on(&[1.0, -1.0]);
         let all = drawn(&both);

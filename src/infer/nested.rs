@@ -10,9 +10,8 @@
 
 use rayon::prelude::*;
 
-use super::adapt::taught;
+use super::adapt::{mended, reweighted};
 use super::proposal::{Base, Mixture, Particle};
-use super::schedule::Schedule;
 use super::weights::{Sum, log_mean_weight, quality, summed};
 use crate::error::Result;
 use crate::model::Posterior;
@@ -100,7 +99,6 @@ pub(crate) fn learn<O: Outer>(
     effort: Effort,
     seed: Seed,
 ) -> Result<Learned> {
-    let schedule = Schedule::default();
     let (mut log, mut share) = (f64::NEG_INFINITY, 0.0);
     for round in 0..effort.rounds {
         let seed = seed.child(round);
@@ -111,7 +109,10 @@ pub(crate) fn learn<O: Outer>(
         if share > GOOD && tail < 1.0 {
             break;
         }
-        mixture = taught(&mixture, &found, round, &schedule, seed.child(1));
+        mixture = match round {
+            0 | 1 => reweighted(&mixture, &found),
+            _ => mended(&mixture, &found),
+        };
     }
     Ok(Learned { mixture, log, share })
 }

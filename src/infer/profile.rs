@@ -40,13 +40,15 @@ pub(super) struct Met {
     pub(super) higher: Option<Peak>,
 }
 
-/// What profiles from the highest peaks meet, along all coordinates both ways.
+/// What profiles from the highest peaks meet, along all coordinates
+/// both ways but some that places were looked at along.
 ///
 /// # Errors
 /// What no other parameter values would mend.
 pub(super) fn profiles(
     posterior: &Posterior<'_>,
     peaks: &[Peak],
+    left_out: &[usize],
     schedule: &Schedule,
 ) -> Result<Met> {
     let best = peaks.first().map_or(0.0, |peak| peak.height);
@@ -54,7 +56,9 @@ pub(super) fn profiles(
     let high = peaks.iter().filter(near);
     let all: Vec<Profile<'_>> =
         high.take(schedule.profiled).flat_map(Profile::all).collect();
+    let all = all.into_iter().filter(|p| !left_out.contains(&p.along));
     let met = all
+        .collect::<Vec<_>>()
         .into_par_iter()
         .map(|profile| profile.walked(posterior))
         .collect::<Result<Vec<_>>>()?;

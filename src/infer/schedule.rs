@@ -13,6 +13,8 @@ pub(crate) struct Schedule {
     /// it is a quarter of all places, or sixteen. Most end soon at a peak that
     /// is known.
     pub(crate) climbed: usize,
+    /// How many places beside those that hold most are looked at, at the most.
+    pub(crate) surveyed: usize,
     /// From how many of the highest peaks profiles are made, and how far below
     /// the highest these may be, in ln.
     pub(crate) profiled: usize,
@@ -22,12 +24,13 @@ pub(crate) struct Schedule {
     pub(crate) negligible: f64,
     /// The most components.
     pub(crate) components: usize,
-    /// Draws of a round of learning: some fifty for each coordinate.
+    /// Draws of the first rounds, some fifty for each coordinate, and how many
+    /// such rounds there are: they reweight components.
     pub(crate) learning_draws: usize,
-    /// Rounds of learning: the first ones reweight components, the later ones
-    /// add some.
     pub(crate) reweighting_rounds: u64,
-    /// The most rounds in all.
+    /// Draws of the later rounds, which add components and judge whether the
+    /// proposal is good, and the most rounds in all.
+    pub(crate) judging_draws: usize,
     pub(crate) rounds: u64,
     /// The effective share of draws at which a proposal is good, with a Pareto
     /// tail index below 0.7: above it the mean of the weights has no variance
@@ -36,10 +39,6 @@ pub(crate) struct Schedule {
     /// The share at which it is good with an index below 1: of few draws the
     /// index scatters by 0.2.
     pub(crate) ample_share: f64,
-    /// Draws that a proposal is judged by before it is frozen, and how often
-    /// it may fail and learn from them.
-    pub(crate) judging_draws: usize,
-    pub(crate) judgements: u64,
     /// How often fresh draws are made, when the first say that a weight is
     /// missed which those before did not.
     pub(crate) estimates: u64,
@@ -57,17 +56,12 @@ pub(crate) struct Schedule {
 }
 
 impl Schedule {
-    /// A first look, which says whether a thorough one is worth it.
-    pub(crate) fn first_look() -> Self {
-        Self {
-            promising: 40,
-            climbed: 12,
-            profiled: 1,
-            components: 60,
-            learning_draws: 400,
-            rounds: 3,
-            moved: 100,
-            ..Self::default()
+    /// How many draws a round has.
+    pub(crate) fn draws(&self, round: u64) -> usize {
+        if round < self.reweighting_rounds {
+            self.learning_draws
+        } else {
+            self.judging_draws
         }
     }
 
@@ -87,24 +81,24 @@ impl Schedule {
 impl Default for Schedule {
     fn default() -> Self {
         Self {
-            promising: 200,
-            climbed: 100,
+            promising: 48,
+            surveyed: 200,
+            climbed: 24,
             profiled: 4,
             profiled_below: 4.0,
             negligible: 10.0,
             components: 100,
             learning_draws: 600,
             reweighting_rounds: 2,
-            rounds: 4,
-            good_share: 0.1,
-            ample_share: 0.25,
             judging_draws: 2000,
-            judgements: 6,
+            rounds: 7,
+            good_share: 0.03,
+            ample_share: 0.1,
             estimates: 2,
-            moved: 300,
-            reached_share: 0.05,
+            moved: 400,
+            reached_share: 0.015,
             error: 0.05,
-            final_draws: (1000, 6000),
+            final_draws: (1000, 16_000),
             particles: 800,
         }
     }

@@ -97,8 +97,21 @@ pub(super) fn outlook(
 /// A held place with where the other coordinates come to.
 struct Looked<'s> {
     grid: &'s HeldGrid,
-    place: &'s HeldPlace,
+    spacing: Vec<f64>,
     peak: Peak,
+    /// About what all other coordinates hold there, in ln.
+    log: f64,
+    /// Whether those next to it were looked at.
+    surrounded: bool,
+}
+
+/// A step from a place to one next to it.
+struct Step<'s> {
+    /// Which of the coordinates that are held.
+    along: usize,
+    /// Which of the places it begins at.
+    from: usize,
+    to: Looked<'s>,
 }
 
 /// A search under way.
@@ -178,8 +191,78 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
             self.climb(start.as_slice())?;
         }
         self.looked.extend(promising);
+        self.spread_out()?;
         self.looked.extend(found);
         Ok(())
+    }
+
+    /// Goes on from the places that hold most to those next to them, as long
+    /// as these hold anything.
+    fn spread_out(&mut self) -> Result<()> {
+        let mut left = self.schedule.surveyed;
+        while left > 0 {
+            let next = self.beside(left.min(AT_ONCE));
+            if next.is_empty() {
+                break;
+            }
+            left = left.saturating_sub(next.len());
+            let posterior = self.posterior;
+            let taken = next
+                .into_par_iter()
+                .map(|step| step.taken(posterior))
+                .collect::<Result<Vec<_>>>()?;
+            for step in taken {
+                self.arrive(step);
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes a step's end in. Strides are longer where what is held hardly
+    /// changes, and shorter where it changes much: then those next to the
+    /// beginning are looked at again, half as far.
+    fn arrive(&mut self, step: Step<'s>) {
+        let Step { along, from, mut to } = step;
+        let before = self.looked[from].log;
+        let change = (to.log - before).abs();
+        if change < EVEN {
+            to.spacing[along] *= 2.0;
+        } else if change > STEEP {
+            let beginning = &mut self.looked[from];
+            to.spacing[along] *= 0.5;
+            if to.log < before && beginning.spacing[along] > to.spacing[along]
+            {
+                beginning.spacing[along] = to.spacing[along];
+                beginning.surrounded = false;
+            }
+        }
+        self.looked.push(to);
+    }
+
+    /// Steps to places not yet looked at, from those that hold most.
+    fn beside(&mut self, most: usize) -> Vec<Step<'s>> {
+        let logs = self.looked.iter().map(|one| one.log);
+        let best = logs.fold(f64::NEG_INFINITY, f64::max);
+        self.looked.sort_by(|a, b| b.log.total_cmp(&a.log));
+        let mut next: Vec<Step<'s>> = Vec::new();
+        for i in 0..self.looked.len() {
+            let one = &self.looked[i];
+            if best - one.log > HOLDS || next.len() >= most {
+                break;
+            }
+            if one.surrounded {
+                continue;
+            }
+            for step in one.beside(i) {
+                let covers = |other: &Looked<'s>| other.covers(&step.to);
+                let known = self.looked.iter().any(covers);
+                if !known && !next.iter().any(|s| s.to.covers(&step.to)) {
+                    next.push(step);
+                }
+            }
+            self.looked[i].surrounded = true;
+        }
+        next
     }
 
     /// Profiles from the highest peaks; where these lead higher, from there.
@@ -188,26 +271,51 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
     /// stops a climb short, and strides along a coordinate pass over that.
     fn profile(&mut self) -> Result<Vec<Component>> {
         let alone = Schedule { profiled: 1, ..*self.schedule };
+        let held = self.surveyed();
         for _ in 0..HIGHER {
-            let met = profiles(self.posterior, &self.peaks, &alone)?;
+            let met = profiles(self.posterior, &self.peaks, &held, &alone)?;
             match met.higher {
                 Some(higher) => self.climb(higher.line.as_slice())?,
-                None if self.schedule.profiled == 1 => {
-                    return Ok(met.components);
-                }
+                None if !held.is_empty() => return Ok(met.components),
                 None => break,
             }
         }
-        let met = profiles(self.posterior, &self.peaks, self.schedule)?;
+        let met = profiles(self.posterior, &self.peaks, &held, self.schedule)?;
         Ok(met.components)
+    }
+
+    /// The coordinates along which places were looked at.
+    fn surveyed(&self) -> Vec<usize> {
+        let mut all: Vec<usize> = Vec::new();
+        for one in &self.looked {
+            for &i in &one.grid.held {
+                if !all.contains(&i) {
+                    all.push(i);
+                }
+            }
+        }
+        all
+    }
+
+    /// About a peak, no wider than the nearest place along what is held: where
+    /// a density bends, its derivatives tell nothing of how wide it is.
+    fn of_peak(&self, peak: &Peak) -> Option<Component> {
+        let nearest = self.looked.iter().min_by(|a, b| {
+            a.distance(&peak.line).total_cmp(&b.distance(&peak.line))
+        });
+        match nearest {
+            None => Component::of_peak(peak),
+            Some(one) => {
+                let Looked { grid, spacing, .. } = one;
+                Component::within(peak, &grid.held, spacing)
+            }
+        }
     }
 
     fn components(mut self) -> Result<Vec<Component>> {
         let profiles = self.profile()?;
-        let of_peaks = self.peaks.iter().filter_map(Component::of_peak);
-        let of_places = self.looked.iter().filter_map(|one| {
-            Component::of_place(&one.peak, &one.grid.held, &one.place.spacing)
-        });
+        let of_peaks = self.peaks.iter().filter_map(|peak| self.of_peak(peak));
+        let of_places = self.looked.iter().filter_map(Looked::component);
         let mut all: Vec<Component> =
             of_peaks.chain(of_places).chain(profiles).collect();
         all.sort_by(|a, b| b.log.total_cmp(&a.log));
@@ -219,7 +327,7 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
 }
 
 /// From how many held places a climb starts at the least.
-const LEAST_CLIMBED: usize = 16;
+const LEAST_CLIMBED: usize = 8;
 
 /// How many places are held.
 fn places_of(space: &SearchSpace) -> usize {
@@ -227,7 +335,7 @@ fn places_of(space: &SearchSpace) -> usize {
 }
 
 /// How often profiles may lead higher.
-const HIGHER: usize = 8;
+const HIGHER: usize = 4;
 
 /// Peaks nearer than this many widths, squared, are one.
 const ALIKE: f64 = 1.0;
@@ -274,28 +382,109 @@ fn glance<'s>(
         }
     }
     let peak = Peak { line, height, precision: slope.precision };
-    Ok(Some(Looked { grid, place, peak }))
+    Ok(Some(Looked::new(grid, place.spacing.clone(), peak)))
 }
 
 /// The damping of that step, and how long it is at the most along any axis.
 const DAMPING: f64 = 1e-2;
 const LONGEST: f64 = 3.0;
 
-impl Looked<'_> {
-    /// Whether it is within a spacing of another place of its grid.
-    fn is_next_to(&self, other: &Self) -> bool {
-        let held = self.grid.held.iter().zip(&self.place.spacing);
+impl<'s> Looked<'s> {
+    fn new(grid: &'s HeldGrid, spacing: Vec<f64>, peak: Peak) -> Self {
+        let log = f64::NEG_INFINITY;
+        let mut one = Self { grid, spacing, peak, log, surrounded: false };
+        one.weigh();
+        one
+    }
+
+    /// Says what it holds.
+    fn weigh(&mut self) {
+        let widths: f64 = self.spacing.iter().map(|x| x.ln()).sum();
+        self.log = self
+            .component()
+            .map_or(f64::NEG_INFINITY, |component| component.log - widths);
+    }
+
+    fn component(&self) -> Option<Component> {
+        Component::of_place(&self.peak, &self.grid.held, &self.spacing)
+    }
+
+    /// How far a place is along what is held, in spacings, squared.
+    fn distance(&self, line: &DVector<f64>) -> f64 {
+        let held = self.grid.held.iter().zip(&self.spacing);
+        let off = |(&i, apart): (&usize, &f64)| {
+            (self.peak.line[i] - line[i]) / apart
+        };
+        held.map(off).map(|x| x * x).sum()
+    }
+
+    /// Whether another place of its grid is within a share of its spacing.
+    fn is_within(&self, other: &Self, share: f64) -> bool {
+        let held = self.grid.held.iter().zip(&self.spacing);
         std::ptr::eq(self.grid, other.grid)
             && held.into_iter().all(|(&i, spacing)| {
-                (self.place.line[i] - other.place.line[i]).abs() < *spacing
+                (self.peak.line[i] - other.peak.line[i]).abs()
+                    < share * spacing
             })
+    }
+
+    /// Whether it is within a spacing of another place of its grid.
+    fn is_next_to(&self, other: &Self) -> bool {
+        self.is_within(other, 1.0)
+    }
+
+    /// Whether another place is no narrower and so near that it adds nothing.
+    fn covers(&self, other: &Self) -> bool {
+        let no_wider = |(own, its): (&f64, &f64)| *own <= 1.5 * its;
+        self.spacing.iter().zip(&other.spacing).all(no_wider)
+            && self.is_within(other, 0.6)
+    }
+
+    /// The steps to the places next to it.
+    fn beside(&self, from: usize) -> Vec<Step<'s>> {
+        let ways = (0..self.spacing.len()).flat_map(|k| [(k, 1.0), (k, -1.0)]);
+        ways.map(|(along, sign)| {
+            let mut peak = self.peak.clone();
+            let held = self.grid.held[along];
+            peak.line[held] += sign * self.spacing[along];
+            let spacing = self.spacing.clone();
+            let (grid, log) = (self.grid, f64::NEG_INFINITY);
+            let to = Self { grid, spacing, peak, log, surrounded: false };
+            Step { along, from, to }
+        })
+        .collect()
     }
 
     fn climb_on(&mut self, posterior: &Posterior<'_>) -> Result<()> {
         let (line, held) = (self.peak.line.as_slice(), &self.grid.held[..]);
         if let Some(peak) = climb_holding(posterior, line, held, FEW)? {
             self.peak = peak;
+            self.weigh();
         }
         Ok(())
     }
 }
+
+impl<'s> Step<'s> {
+    /// Climbs where it leads to.
+    fn taken(mut self, posterior: &Posterior<'_>) -> Result<Self> {
+        let (line, held) =
+            (self.to.peak.line.as_slice(), &self.to.grid.held[..]);
+        let found = climb_holding(posterior, line, held, STEPS_ASIDE)?;
+        if let Some(peak) = found {
+            self.to.peak = peak;
+            self.to.weigh();
+        }
+        Ok(self)
+    }
+}
+
+/// How far below the best, in ln, places are whose neighbours are looked at.
+const HOLDS: f64 = 5.0;
+/// How many steps aside are taken at once, and the steps of the climb there.
+const AT_ONCE: usize = 24;
+const STEPS_ASIDE: usize = 3;
+/// Changes of what is held, in ln, from one place to the next, below which the
+/// next stride is twice as long, and above which half.
+const EVEN: f64 = 0.4;
+const STEEP: f64 = 1.5;

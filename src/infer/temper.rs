@@ -1,6 +1,6 @@
 //! Tempering from a frozen proposal, where learning alone does not do.
 
-use super::adapt::{Frozen, judged};
+use super::adapt::Frozen;
 use super::backends::Smc;
 use super::estimate::{Precision, estimated};
 use super::proposal::{Base, Mixture};
@@ -48,8 +48,13 @@ pub(super) fn tempered(
         return Ok(led);
     };
     let mixture = fitted.beside(frozen.mixture.clone());
-    let proposal = Frozen { mixture, ..frozen.clone() };
-    let again = judged(posterior, proposal, schedule, seed.child(2))?;
+    let rounds = schedule.rounds;
+    let again = Frozen::new(mixture).learned(
+        posterior,
+        schedule,
+        rounds,
+        seed.child(2),
+    )?;
     let precision = Precision::Sharp;
     let sampled =
         estimated(posterior, &again, schedule, precision, seed.child(3));

@@ -28,6 +28,10 @@ pub struct Information {
     pub gradient: DVector<f64>,
     /// About minus its Hessian; positive semidefinite.
     pub precision: DMatrix<f64>,
+    /// The derivatives of the innovations and of their scales, a row for each
+    /// coordinate: `precision` is their product with themselves, and the bends
+    /// of the priors. Empty where the density is put together from others.
+    pub(crate) slopes: DMatrix<f64>,
 }
 
 impl Information {
@@ -37,6 +41,7 @@ impl Information {
             density: Density::ONE,
             gradient: DVector::zeros(dimension),
             precision: DMatrix::zeros(dimension, dimension),
+            slopes: DMatrix::zeros(dimension, 0),
         }
     }
 
@@ -131,12 +136,12 @@ pub(super) fn information<P: Program>(
         _ => fill::<Grad<16>, P>(program, z, &mut gradient, &mut columns),
     }?;
     let bends = columns.bends;
-    let columns = DMatrix::from_vec(z.len(), columns.next, columns.numbers);
-    let mut precision = &columns * columns.transpose();
+    let slopes = DMatrix::from_vec(z.len(), columns.next, columns.numbers);
+    let mut precision = &slopes * slopes.transpose();
     for (i, bend) in bends.iter().take(z.len()).enumerate() {
         precision[(i, i)] += bend;
     }
-    Ok(Information { density, gradient, precision })
+    Ok(Information { density, gradient, precision, slopes })
 }
 
 fn fill<K: Number, P: Program>(

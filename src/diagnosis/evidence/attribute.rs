@@ -3,15 +3,14 @@
 
 use rayon::prelude::*;
 
-use super::fit::{
-    Fit, Prospect, UNSEEN, fit, prospect, prospect_above, spread,
-};
-use super::grids::{edge_grids, even_grids};
+use super::fit::{Fit, Prospect, fit, prospect, spread};
+use super::grids::even_grids;
+use super::screen::edge_grids;
 use crate::diagnosis::locate::{FreeForce, locate_all};
 use crate::error::Result;
 use crate::infer::{LaplaceMixture, Precision, Progress, SearchSpace};
 use crate::mechanism::{Extent, Mechanism};
-use crate::model::Program;
+use crate::model::{Posterior, Program, With};
 use crate::seed::Seed;
 
 /// What the evidence says of a model and of each mechanism added to it.
@@ -42,10 +41,6 @@ const PRIOR_STARTS: usize = 4;
 /// than a hundred-thousandth of the probability.
 const IRRELEVANT: f64 = 10.5;
 
-/// How much higher, in ln, an evidence may come to be whose proposal has poor
-/// weights yet.
-const OPEN: f64 = 3.0;
-
 /// Fits the model as it is, with a free-form force, and with each mechanism;
 /// sharply where it matters. Without an extent no free-form force is weighed.
 ///
@@ -65,45 +60,39 @@ pub fn attribute<P: Program>(
         Some(extent) => locate_all(program, extent, &none, seed_of)?,
         None => Vec::new(),
     };
-    let owns = owns(&none, &forces);
+    let owns = owns(program, &none, &forces)?;
     progress.begin("weighing mechanisms", Some(catalogue.len() as u64));
     let all: Vec<(usize, &dyn Mechanism)> =
         catalogue.iter().map(AsRef::as_ref).enumerate().collect();
     let of = |i: usize| seed.child(1 + i as u64);
-    let backend = |i: usize, mechanism: &dyn Mechanism| {
-        LaplaceMixture::within(single(mechanism, &owns, of(i).child(0)))
-    };
-    let first = all
+    let looked = all
         .par_iter()
         .map(|&(i, mechanism)| {
-            let backend = backend(i, mechanism).at_first();
-            let seed = of(i).child(1);
-            let found = prospect(program, &[mechanism], backend, seed)
+            let found = single(program, mechanism, &owns, of(i))
                 .map_err(|error| error.within(mechanism.name()));
             progress.advance(1);
             found
         })
         .collect::<Result<Vec<Prospect>>>()?;
-    let logs = first.iter().map(Prospect::log);
-    let best = logs.fold(none.log_evidence, f64::max);
+    let highest = |prospects: &[Prospect]| {
+        let logs = prospects.iter().map(Prospect::log);
+        logs.fold(none.log_evidence, f64::max) - IRRELEVANT
+    };
+    let threshold = highest(&looked);
     let prospects = all
         .par_iter()
-        .zip(first)
-        .map(|(&(i, mechanism), first)| {
-            if first.log() + UNSEEN < best - IRRELEVANT {
-                return Ok(first);
-            }
+        .zip(looked)
+        .map(|(&(i, mechanism), looked)| {
             let seed = of(i).child(3);
-            prospect(program, &[mechanism], backend(i, mechanism), seed)
+            looked.pursued(program, &[mechanism], threshold, seed)
         })
         .collect::<Result<Vec<Prospect>>>()?;
-    let logs = prospects.iter().map(Prospect::log);
-    let best = logs.fold(none.log_evidence, f64::max);
+    let threshold = highest(&prospects);
     let candidates = all
         .into_par_iter()
         .zip(prospects)
         .map(|((i, mechanism), prospect)| {
-            let precision = precision(&prospect, best - IRRELEVANT);
+            let precision = precision(&prospect, threshold);
             prospect
                 .fit(program, &[mechanism], precision, of(i).child(2))
                 .map_err(|error| error.within(mechanism.name()))
@@ -115,58 +104,90 @@ pub fn attribute<P: Program>(
 /// Where the model's own parameters begin: at their best with nothing added,
 /// where errors may explain what is missing, and at their best with a force of
 /// free form, where it does.
-fn owns(none: &Fit, forces: &[FreeForce]) -> Vec<Vec<f64>> {
+fn owns<P: Program>(
+    program: &P,
+    none: &Fit,
+    forces: &[FreeForce],
+) -> Result<Vec<Vec<f64>>> {
+    let with = With::new(program, &[]);
+    let posterior = Posterior::new(&with)?;
     let likely = forces
         .iter()
         .max_by(|a, b| a.log_bayes_factor.total_cmp(&b.log_bayes_factor));
     let open = likely.map(FreeForce::middle_of_own);
-    [none.own().to_vec()].into_iter().chain(open).collect()
+    let rows = none.draws.thinned(DRAWN).into_iter();
+    let drawn: Vec<Vec<f64>> =
+        rows.map(|row| posterior.line(row)).collect::<Result<_>>()?;
+    let best = [none.own().to_vec()];
+    Ok(best.into_iter().chain(open).chain(tails(drawn)).collect())
+}
+
+/// Of how many draws of the model as it is those in the tails of each
+/// parameter are looked at: the memory of the errors, above all, decides which
+/// stretches they hide.
+const DRAWN: usize = 400;
+
+/// The draws near the ends of each coordinate's middle 95 %.
+fn tails(mut drawn: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let coordinates = drawn.first().map_or(0, Vec::len);
+    let (low, high) = (drawn.len() / 40, drawn.len() - 1 - drawn.len() / 40);
+    (0..coordinates)
+        .flat_map(|i| {
+            drawn.sort_by(|a, b| a[i].total_cmp(&b[i]));
+            [drawn[low].clone(), drawn[high].clone()]
+        })
+        .collect()
 }
 
 /// How sharply what has such a prospect is worth estimating, if evidences
 /// below a threshold do not matter.
 fn precision(prospect: &Prospect, threshold: f64) -> Precision {
-    let reach = if prospect.is_settled() { 1.0 } else { OPEN };
-    if prospect.log() + reach > threshold {
-        Precision::Sharp
-    } else {
-        Precision::Rough
+    match prospect.may_reach(threshold) {
+        true => Precision::Sharp,
+        false => Precision::Rough,
     }
 }
 
-/// Where a single mechanism is looked for.
-fn single(
+/// Looks at a single mechanism, with the model's own parameters beginning at
+/// each of some places.
+fn single<P: Program>(
+    program: &P,
     mechanism: &dyn Mechanism,
     owns: &[Vec<f64>],
     seed: Seed,
-) -> SearchSpace {
+) -> Result<Prospect> {
+    let with = With::new(program, &[mechanism]);
+    let posterior = Posterior::new(&with)?;
     let mut space =
         SearchSpace { prior_starts: PRIOR_STARTS, ..SearchSpace::default() };
     for (i, own) in owns.iter().enumerate() {
-        let seed = seed.child(i as u64);
-        space.extend(around(mechanism, None, &[], own, seed));
+        let seed = seed.child(0).child(i as u64);
+        space.extend(around(&posterior, mechanism, None, &[], own, seed)?);
     }
-    space
+    let backend = LaplaceMixture::within(space);
+    prospect(program, &[mechanism], backend, seed.child(1))
 }
 
 /// Where a mechanism is looked for, all other coordinates beginning at those
 /// before and after it: anywhere in its prior, along its grids, and at the
 /// best place that is known of it.
 fn around(
+    posterior: &Posterior<'_>,
     mechanism: &dyn Mechanism,
     known: Option<&[f64]>,
     before: &[f64],
     after: &[f64],
     seed: Seed,
-) -> SearchSpace {
+) -> Result<SearchSpace> {
     let unknowns = mechanism.unknowns();
     let joined = |place: &[f64]| [before, place, after].concat();
-    let anywhere = spread(&unknowns, climbs(unknowns.len()), seed.child(0));
+    let mut grids = edge_grids(posterior, mechanism, before, after)?;
+    let climbs = if grids.is_empty() { climbs(unknowns.len()) } else { 0 };
+    let anywhere = spread(&unknowns, climbs, seed.child(0));
     let places = anywhere.iter().map(|(place, _)| &place[..]);
     let starts = known.into_iter().chain(places).map(joined).collect();
-    let mut grids = even_grids(mechanism, before, after, seed.child(1));
-    grids.extend(edge_grids(mechanism, before, after));
-    SearchSpace { prior_starts: 0, starts, grids }
+    grids.extend(even_grids(mechanism, before, after, seed.child(1)));
+    Ok(SearchSpace { prior_starts: 0, starts, grids })
 }
 
 /// A model whose mechanisms are known, with where it is best on the line.
@@ -191,21 +212,25 @@ pub fn pair<P: Program>(
     seed: Seed,
 ) -> Result<Option<Fit>> {
     let ([a, b], [of_a, of_b]) = (mechanisms, fits);
+    let with = With::new(program, &mechanisms);
+    let posterior = Posterior::new(&with)?;
     let (mut space, more) = (
         around(
+            &posterior,
             b,
             Some(of_b.mechanism()),
             of_a.mechanism(),
             of_a.own(),
             seed.child(0),
-        ),
+        )?,
         around(
+            &posterior,
             a,
             Some(of_a.mechanism()),
             &[],
             &[of_b.mechanism(), of_b.own()].concat(),
             seed.child(1),
-        ),
+        )?,
     );
     space.extend(more);
     fit_if_worth(program, &mechanisms, space, hurdle, seed.child(9))
@@ -220,9 +245,13 @@ pub(crate) fn extend<P: Program>(
     seed: Seed,
 ) -> Result<Option<Fit>> {
     let best = Some(fit.mechanism());
-    let space = around(added, best, known.added, known.own, seed.child(0));
     let mut mechanisms = known.mechanisms.to_vec();
     mechanisms.push(added);
+    let with = With::new(program, &mechanisms);
+    let posterior = Posterior::new(&with)?;
+    let Known { added: before, own, .. } = *known;
+    let seed_of = seed.child(0);
+    let space = around(&posterior, added, best, before, own, seed_of)?;
     fit_if_worth(program, &mechanisms, space, hurdle, seed.child(9))
 }
 
@@ -239,13 +268,13 @@ fn fit_if_worth<P: Program>(
     seed: Seed,
 ) -> Result<Option<Fit>> {
     let backend = LaplaceMixture::within(space);
-    let (least, seed_of) = (hurdle - SHORT, seed.child(0));
-    let prospect =
-        prospect_above(program, mechanisms, backend, least, seed_of)?;
-    match precision(&prospect, least) {
+    let least = hurdle - SHORT;
+    let looked = prospect(program, mechanisms, backend, seed.child(0))?;
+    let found = looked.pursued(program, mechanisms, least, seed.child(2))?;
+    match precision(&found, least) {
         Precision::Rough => Ok(None),
         sharp => {
-            prospect.fit(program, mechanisms, sharp, seed.child(1)).map(Some)
+            found.fit(program, mechanisms, sharp, seed.child(1)).map(Some)
         }
     }
 }

@@ -3,6 +3,7 @@
 use rand::RngExt;
 
 use crate::diagnosis::evidence::apart::explore;
+use crate::diagnosis::evidence::edges::on_line;
 use crate::draws::Draws;
 use crate::error::{Error, Result};
 use crate::infer::{
@@ -10,8 +11,7 @@ use crate::infer::{
 };
 use crate::mechanism::{Mechanism, Unknown};
 use crate::model::{Point, Posterior, Program, With};
-use crate::prior::{AnyPrior, Prior};
-use crate::scalar::{Plain, Real};
+use crate::prior::AnyPrior;
 use crate::seed::Seed;
 
 /// What a fit found.
@@ -58,9 +58,42 @@ impl Prospect {
         self.log
     }
 
-    /// Whether the proposal's weights are good.
-    pub(crate) fn is_settled(&self) -> bool {
-        self.frozen.as_ref().is_some_and(|frozen| frozen.good)
+    /// Whether what it holds may be above a threshold, in ln.
+    pub(crate) fn may_reach(&self, threshold: f64) -> bool {
+        let unseen = match &self.frozen {
+            Some(frozen) if frozen.good => SETTLED,
+            Some(frozen) if frozen.round > FEW_ROUNDS => OPEN,
+            _ => UNSEEN,
+        };
+        self.log + unseen > threshold
+    }
+
+    /// After learning more, as long as it may reach a threshold.
+    ///
+    /// # Errors
+    /// A model that fails.
+    pub(crate) fn pursued<P: Program>(
+        mut self,
+        program: &P,
+        mechanisms: &[&dyn Mechanism],
+        threshold: f64,
+        seed: Seed,
+    ) -> Result<Self> {
+        let with = With::new(program, mechanisms);
+        let posterior = Posterior::new(&with)?;
+        let most = self.backend.schedule.rounds;
+        for rounds in [FEW_ROUNDS + 2, most] {
+            let Some(frozen) = self.frozen.clone() else { break };
+            if frozen.good || !self.may_reach(threshold) {
+                break;
+            }
+            let backend = &self.backend;
+            let seed = seed.child(rounds);
+            let next = backend.learned(&posterior, frozen, rounds, seed)?;
+            self.log = next.log;
+            self.frozen = Some(next);
+        }
+        Ok(self)
     }
 
     /// The fit of the same program and mechanisms.
@@ -87,30 +120,16 @@ impl Prospect {
     }
 }
 
-/// Looks at a program with mechanisms for the first time, and again thoroughly
-/// if what that promises comes near a threshold.
-///
-/// # Errors
-/// An improper prior, or a model that fails.
-pub(crate) fn prospect_above<P: Program>(
-    program: &P,
-    mechanisms: &[&dyn Mechanism],
-    backend: LaplaceMixture,
-    threshold: f64,
-    seed: Seed,
-) -> Result<Prospect> {
-    let first = backend.at_first();
-    let found = prospect(program, mechanisms, first, seed.child(0))?;
-    if found.log + UNSEEN < threshold {
-        return Ok(found);
-    }
-    prospect(program, mechanisms, backend, seed.child(1))
-}
+/// How much more, in ln, a proposal may come to hold: one that has learned
+/// little, one that has poor weights yet, and a good one.
+const UNSEEN: f64 = 4.0;
+const OPEN: f64 = 3.0;
+const SETTLED: f64 = 1.0;
 
-/// How much more, in ln, a thorough look may find than a first one.
-pub(crate) const UNSEEN: f64 = 4.0;
+/// For how many rounds one learns that is only looked at.
+const FEW_ROUNDS: u64 = 2;
 
-/// Searches a program with mechanisms, and learns where it lies.
+/// Searches a program with mechanisms, and looks at what is there.
 ///
 /// # Errors
 /// An improper prior, or a model that fails.
@@ -126,7 +145,9 @@ pub(crate) fn prospect<P: Program>(
         let log = backend.outlook(&posterior, seed)?;
         return Ok(Prospect { backend, frozen: None, log });
     }
-    let frozen = backend.freeze(&posterior, seed)?;
+    let found = backend.searched(&posterior, seed.child(0))?;
+    let seed = seed.child(1);
+    let frozen = backend.learned(&posterior, found, FEW_ROUNDS, seed)?;
     let log = frozen.log;
     Ok(Prospect { backend, frozen: Some(frozen), log })
 }
@@ -239,12 +260,4 @@ fn radical_inverse(mut i: u64, base: u64) -> f64 {
         digit /= base as f64;
     }
     value
-}
-
-/// The place on the real line of a prior's quantile.
-pub(crate) fn on_line(prior: &AnyPrior, p: f64) -> f64 {
-    let x = prior.quantile(p).unwrap_or(0.0);
-    let support = <AnyPrior as Prior<Plain>>::support(prior);
-    let line = support.to_line(Real::<Plain>::new(x).value());
-    if line.is_finite() { line } else { 0.0 }
 }

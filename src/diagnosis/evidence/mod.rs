@@ -2,5 +2,7 @@
 
 pub(crate) mod apart;
 pub(crate) mod attribute;
+mod edges;
 pub(crate) mod fit;
 mod grids;
+mod screen;

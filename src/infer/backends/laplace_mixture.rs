@@ -11,7 +11,7 @@
 //! learn is *tempered* (`temper.rs`).
 
 use crate::error::{Error, Result};
-use crate::infer::adapt::{Frozen, adapted, judged, taught};
+use crate::infer::adapt::Frozen;
 use crate::infer::estimate::{Estimate, Precision, estimated};
 use crate::infer::proposal::{Component, Mixture};
 use crate::infer::schedule::Schedule;
@@ -48,7 +48,7 @@ impl Backend for LaplaceMixture {
         seed: Seed,
         progress: &dyn Progress,
     ) -> Result<Inference> {
-        let frozen = self.freeze(posterior, seed.child(0))?;
+        let frozen = self.frozen(posterior, seed.child(0))?;
         let seed = seed.child(1);
         self.estimate(posterior, &frozen, Precision::Sharp, seed, progress)
     }
@@ -72,26 +72,49 @@ impl LaplaceMixture {
         Self { schedule, ..Self::default() }
     }
 
-    /// The same at a first look, which says whether more is worth it.
-    pub(crate) fn at_first(&self) -> Self {
-        let schedule = Schedule::first_look();
-        Self { space: self.space.clone(), schedule }
-    }
-
-    /// Searches and learns: a proposal that learns no more.
+    /// Searches: a proposal that has learned nothing yet.
     ///
     /// # Errors
     /// An improper prior, or a model that fails.
-    pub(crate) fn freeze(
+    pub(crate) fn searched(
         &self,
         posterior: &Posterior<'_>,
         seed: Seed,
     ) -> Result<Frozen> {
         posterior.require_proper("the Laplace mixture")?;
         let Self { space, schedule } = self;
-        let components =
-            components(posterior, space, schedule, seed.child(0))?;
-        adapted(posterior, mixture(&components)?, schedule, seed.child(1))
+        let components = components(posterior, space, schedule, seed)?;
+        Ok(Frozen::new(mixture(&components)?))
+    }
+
+    /// Searches, and learns until it is good, or for as long as the schedule
+    /// says.
+    ///
+    /// # Errors
+    /// As [`LaplaceMixture::searched`].
+    pub(crate) fn frozen(
+        &self,
+        posterior: &Posterior<'_>,
+        seed: Seed,
+    ) -> Result<Frozen> {
+        let found = self.searched(posterior, seed.child(0))?;
+        let rounds = self.schedule.rounds;
+        self.learned(posterior, found, rounds, seed.child(1))
+    }
+
+    /// The same after so many rounds of learning in all, unless it is good
+    /// before.
+    ///
+    /// # Errors
+    /// A model that fails.
+    pub(crate) fn learned(
+        &self,
+        posterior: &Posterior<'_>,
+        frozen: Frozen,
+        rounds: u64,
+        seed: Seed,
+    ) -> Result<Frozen> {
+        frozen.learned(posterior, &self.schedule, rounds, seed)
     }
 
     /// The evidence from a frozen proposal.
@@ -109,29 +132,31 @@ impl LaplaceMixture {
         progress.begin("importance sampling", None);
         let schedule = &self.schedule;
         let mut frozen = frozen.clone();
+        let rough = precision == Precision::Rough;
         for time in 0..schedule.estimates {
             let seed = seed.child(time);
-            if precision == Precision::Sharp {
-                frozen = judged(posterior, frozen, schedule, seed.child(0))?;
-                if !frozen.good {
-                    break;
-                }
+            if !(frozen.good || rough) {
+                break;
             }
-            let seed_of = |i: u64| seed.child(1).child(i);
             let Estimate { made, found, does } = estimated(
                 posterior,
                 &frozen,
                 schedule,
                 precision,
-                seed_of(0),
+                seed.child(0),
             )?;
-            if does || precision == Precision::Rough {
+            if does || rough {
                 return Ok(made);
             }
-            let late = schedule.reweighting_rounds + 1;
-            let mixture = &frozen.mixture;
-            frozen.mixture =
-                taught(mixture, &found, late, schedule, seed_of(1));
+            frozen.good = false;
+            frozen = frozen
+                .moved_on(posterior, &found, schedule, seed.child(1))?
+                .learned(
+                    posterior,
+                    schedule,
+                    schedule.rounds,
+                    seed.child(2),
+                )?;
         }
         tempered(posterior, &frozen, schedule, seed.child(100), progress)
     }

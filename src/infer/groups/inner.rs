@@ -82,7 +82,7 @@ impl<'a> Inner<'a> {
         };
         let schedule = Schedule { good_share: SHARP, ..laplace.schedule };
         let search = LaplaceMixture { space, schedule };
-        let mixture = search.freeze(&posterior, seed)?.mixture;
+        let mixture = search.frozen(&posterior, seed)?.mixture;
         Ok(Some(Shape { mode, mixture }))
     }
 

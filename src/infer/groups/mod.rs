@@ -24,7 +24,7 @@ mod region;
 use nalgebra::DVector;
 use rand::seq::SliceRandom;
 
-use super::adapt::adapted;
+use super::adapt::Frozen;
 use super::backends::laplace_mixture::{LaplaceMixture, mixture};
 use super::estimate::{Precision, estimated};
 use super::nested::{Effort, Held, Outer, integrated, learn};
@@ -71,6 +71,9 @@ const EFFORT: Effort =
 /// The effective share at which a proposal for all coordinates at once does:
 /// nested, a draw costs dozens of times as much.
 const JOINT: f64 = 0.25;
+
+/// After how many rounds it is given up.
+const JOINT_ROUNDS: u64 = 4;
 
 /// How the evidence of groups with something in common is found.
 const NESTED: &str = "importance sampling of what is in common, and of each \
@@ -176,7 +179,9 @@ impl LaplaceMixture {
         let schedule = Schedule { good_share: JOINT, ..self.schedule };
         let parts = components(&whole, &self.space, &schedule, seed.child(0))?;
         let proposal = mixture(&parts)?;
-        let joint = adapted(&whole, proposal, &schedule, seed.child(2))?;
+        let (rounds, seed_of) = (JOINT_ROUNDS, seed.child(2));
+        let joint = Frozen::new(proposal)
+            .learned(&whole, &schedule, rounds, seed_of)?;
         if joint.good {
             let (whole, sharp) = (grouped.whole, Precision::Sharp);
             let seed = seed.child(3);

@@ -36,6 +36,19 @@ impl Component {
         Self::new(peak, peak.precision.clone())
     }
 
+    /// About a peak, along some coordinates no wider than told.
+    pub(in crate::infer) fn within(
+        peak: &Peak,
+        held: &[usize],
+        widths: &[f64],
+    ) -> Option<Self> {
+        let mut precision = peak.precision.clone();
+        for (&i, width) in held.iter().zip(widths) {
+            precision[(i, i)] += width.powi(-2);
+        }
+        Self::new(peak, precision)
+    }
+
     /// About the best place with some coordinates held: as wide as the next
     /// ones are far along these, the others following as the precision tells.
     pub(in crate::infer) fn of_place(

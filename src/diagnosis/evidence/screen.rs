@@ -1,0 +1,249 @@
+//! Where along the run a stretch, or a step, promises most: by superposition.
+//!
+//! To first order in its amplitude, a stretch does to the predictions what one
+//! from its beginning to the end of the run does, less what one from its end
+//! does. One derivative at each border along the run so tells the score of
+//! every stretch between two borders, all other coordinates at their best
+//! (Rao's score test, with what has to be estimated projected out).
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::edges::{Edges, on_line};
+use crate::error::Result;
+use crate::infer::{HeldGrid, HeldPlace};
+use crate::mechanism::{Mechanism, Unknown};
+use crate::model::Posterior;
+use crate::prior::{AnyPrior, Prior};
+use crate::scalar::{Grad, Plain, Real};
+
+/// The quantiles of its prior between which an amplitude starts.
+const AMPLITUDES: [f64; 2] = [0.02, 0.98];
+/// The quantiles from which one of either sign starts besides: errors that are
+/// correlated explain what a large amplitude explains better, and less lies
+/// between.
+const LARGE: [f64; 2] = [0.07, 0.93];
+/// A quantile of an amplitude that cannot be below zero, where it is as good
+/// as none.
+const HARDLY: f64 = 0.02;
+/// The quantile of a prior that is a standard deviation above its middle.
+const DEVIATION: f64 = 0.8413;
+
+/// How far apart, in borders, places are at the least, with how many of these
+/// there are at the most: some all over the run, most where the scores are.
+const LEVELS: [(usize, usize); 3] = [(15, 8), (5, 10), (1, 14)];
+
+/// Places along the run where an edge of a confined mechanism may be, for each
+/// of its amplitudes; all other coordinates begin at `before` and `after`.
+///
+/// # Errors
+/// What no other parameter values would mend.
+pub(crate) fn edge_grids(
+    posterior: &Posterior<'_>,
+    mechanism: &dyn Mechanism,
+    before: &[f64],
+    after: &[f64],
+) -> Result<Vec<HeldGrid>> {
+    let unknowns = mechanism.unknowns();
+    let mut grids = Vec::new();
+    for along in mechanism.amplitudes() {
+        let earlier = vec![0.0; along.start];
+        let later = vec![0.0; unknowns.len() - along.end];
+        let Some(edges) = Edges::of(&unknowns[along.clone()]) else {
+            continue;
+        };
+        let screen = Screen {
+            posterior,
+            amplitude: &unknowns[along.start],
+            edges,
+            before: [before, &earlier].concat(),
+            after: [&later, after].concat(),
+        };
+        grids.extend(screen.grid()?);
+    }
+    Ok(grids)
+}
+
+/// Edges of one amplitude, all other coordinates at known places.
+struct Screen<'a, 'm> {
+    posterior: &'a Posterior<'m>,
+    amplitude: &'a Unknown,
+    edges: Edges<'a>,
+    before: Vec<f64>,
+    after: Vec<f64>,
+}
+
+impl Screen<'_, '_> {
+    fn line(&self, amplitude: f64, edges: &[f64]) -> Vec<f64> {
+        [&self.before, &[amplitude][..], edges, &self.after].concat()
+    }
+
+    /// The best places; `None` where nothing can be told.
+    fn grid(&self) -> Result<Option<HeldGrid>> {
+        let Some(scores) = self.scores()? else { return Ok(None) };
+        let places = LEVELS
+            .into_iter()
+            .flat_map(|(apart, most)| {
+                let chosen = scores.best(apart, most).into_iter();
+                chosen.flat_map(move |one| self.places(&one, apart))
+            })
+            .collect();
+        let first = self.before.len() + 1;
+        let held = (first..first + self.edges.count()).collect();
+        Ok(Some(HeldGrid { held, places }))
+    }
+
+    /// A place with the amplitude that its score tells; a far one with large
+    /// amplitudes of either sign too.
+    fn places(&self, one: &Scored, apart: usize) -> Vec<HeldPlace> {
+        let prior = &self.amplitude.prior;
+        let support = <AnyPrior as Prior<Plain>>::support(prior);
+        let [low, high] = AMPLITUDES.map(|p| on_line(prior, p));
+        let told = support.to_line(one.amplitude);
+        let told = if told.is_nan() { low } else { told.clamp(low, high) };
+        let large = LARGE.map(|p| on_line(prior, p));
+        let far = apart == LEVELS[0].0 && self.amplitude.is_signed();
+        let further = if far { &large[..] } else { &[] };
+        let (edges, spacing) = self.edges.place(one.from, one.to, apart);
+        let place = |amplitude: &f64| HeldPlace {
+            line: self.line(*amplitude, &edges),
+            spacing: spacing.clone(),
+        };
+        std::iter::once(&told).chain(further).map(place).collect()
+    }
+
+    /// The score of every stretch.
+    fn scores(&self) -> Result<Option<Scores>> {
+        let prior = &self.amplitude.prior;
+        let signed = self.amplitude.is_signed();
+        let small = if signed { 0.0 } else { on_line(prior, HARDLY) };
+        let (stretch, pull) = along_line(prior, small);
+        let index = self.before.len();
+        let informed = (0..self.edges.borders())
+            .into_par_iter()
+            .map(|i| {
+                let line = self.line(small, &self.edges.onwards(i));
+                let about = self.posterior.information(&line)?;
+                Ok(about.density.on_line().is_finite().then_some(about))
+            })
+            .collect::<Result<Vec<_>>>()?;
+        let Some(last) = informed.iter().flatten().last() else {
+            return Ok(None);
+        };
+        let own: Vec<usize> = (0..index)
+            .chain(index + 1 + self.edges.count()..last.gradient.len())
+            .collect();
+        let inner = last.precision.select_rows(&own).select_columns(&own);
+        let Some(factor) = inner.cholesky() else { return Ok(None) };
+        let lower = factor.l();
+        let Some(rest) =
+            lower.solve_lower_triangular(&last.gradient.select_rows(&own))
+        else {
+            return Ok(None);
+        };
+        let (count, data) = (informed.len(), last.slopes.ncols());
+        let mut columns = DMatrix::zeros(data, count);
+        let mut follows = DMatrix::zeros(own.len(), count);
+        let mut score = DVector::zeros(count);
+        for (i, about) in informed.iter().enumerate() {
+            let Some(about) = about else { continue };
+            if about.slopes.ncols() != data {
+                continue;
+            }
+            let column = about.slopes.row(index).transpose() / stretch;
+            let across = about.slopes.select_rows(&own) * &column;
+            if let Some(across) = lower.solve_lower_triangular(&across) {
+                score[i] = (about.gradient[index] - pull) / stretch
+                    - across.dot(&rest);
+                columns.set_column(i, &column);
+                follows.set_column(i, &across);
+            }
+        }
+        let sd = prior.quantile(DEVIATION).unwrap_or(1.0);
+        Ok(Some(Scores {
+            products: columns.tr_mul(&columns) - follows.tr_mul(&follows),
+            score,
+            prior: 1.0 / (sd * sd).max(f64::MIN_POSITIVE),
+            signed,
+            until_end: self.edges.count() == 1,
+        }))
+    }
+}
+
+/// How fast an amplitude grows along the line, and the slope of its prior's
+/// log density there.
+fn along_line(prior: &AnyPrior, z: f64) -> (f64, f64) {
+    type K = Grad<2>;
+    let support = <AnyPrior as Prior<K>>::support(prior);
+    let (x, log_jacobian) = support.from_line(Real::variable(z, 0));
+    let log: Real<K> = prior.log_density(x) + log_jacobian;
+    (x.partial(0), log.partial(0))
+}
+
+/// Scores of an amplitude that begins at each border and lasts to the end,
+/// with what they say of those between two.
+struct Scores {
+    score: DVector<f64>,
+    /// Of what any two do to the innovations, once all else follows.
+    products: DMatrix<f64>,
+    /// The precision of the amplitude's prior.
+    prior: f64,
+    signed: bool,
+    /// Whether all last to the end.
+    until_end: bool,
+}
+
+/// A stretch between two borders with the amplitude that its score tells.
+#[derive(Debug, Clone, Copy)]
+struct Scored {
+    from: usize,
+    to: usize,
+    amplitude: f64,
+    /// About by how much the log density rises.
+    gain: f64,
+}
+
+impl Scores {
+    fn of(&self, from: usize, to: usize) -> Scored {
+        let (mut score, mut bend) =
+            (self.score[from], self.products[(from, from)]);
+        if to < self.score.len() {
+            score -= self.score[to];
+            bend += self.products[(to, to)] - 2.0 * self.products[(from, to)];
+        }
+        let bend = bend.max(0.0) + self.prior;
+        let score = if self.signed { score } else { score.max(0.0) };
+        let gain = 0.5 * score * score / bend;
+        Scored { from, to, amplitude: score / bend, gain }
+    }
+
+    fn all(&self) -> Vec<Scored> {
+        let count = self.score.len();
+        (0..count)
+            .flat_map(|from| {
+                let first = if self.until_end { count } else { from + 1 };
+                (first..=count).map(move |to| self.of(from, to))
+            })
+            .collect()
+    }
+
+    /// The best of those so far from each other.
+    fn best(&self, apart: usize, most: usize) -> Vec<Scored> {
+        let mut all = self.all();
+        all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        let mut chosen: Vec<Scored> = Vec::with_capacity(most);
+        for one in all {
+            let near = |other: &Scored| {
+                one.from.abs_diff(other.from) <= apart
+                    && one.to.abs_diff(other.to) <= apart
+            };
+            if !chosen.iter().any(near) {
+                chosen.push(one);
+            }
+            if chosen.len() == most {
+                break;
+            }
+        }
+        chosen
+    }
+}
