@@ -56,6 +56,18 @@ pub(crate) struct Schedule {
 }
 
 impl Schedule {
+    /// A quick search, which says whether a thorough one is worth it.
+    pub(crate) fn quick() -> Self {
+        Self {
+            promising: 16,
+            surveyed: 48,
+            climbed: 6,
+            profiled: 1,
+            components: 60,
+            ..Self::default()
+        }
+    }
+
     /// How many draws a round has.
     pub(crate) fn draws(&self, round: u64) -> usize {
         if round < self.reweighting_rounds {
@@ -81,9 +93,9 @@ impl Schedule {
 impl Default for Schedule {
     fn default() -> Self {
         Self {
-            promising: 48,
+            promising: 40,
             surveyed: 200,
-            climbed: 24,
+            climbed: 12,
             profiled: 4,
             profiled_below: 4.0,
             negligible: 10.0,

@@ -421,7 +421,7 @@ impl<'s> Looked<'s> {
     /// Whether another place of its grid is within a share of its spacing.
     fn is_within(&self, other: &Self, share: f64) -> bool {
         let held = self.grid.held.iter().zip(&self.spacing);
-        std::ptr::eq(self.grid, other.grid)
+        self.grid.held == other.grid.held
             && held.into_iter().all(|(&i, spacing)| {
                 (self.peak.line[i] - other.peak.line[i]).abs()
                     < share * spacing

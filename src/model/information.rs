@@ -122,6 +122,9 @@ fn bend<K: Kind>(declaration: &Declaration<'_, K>) -> f64 {
     if bend.is_finite() { bend.max(0.0) } else { 0.0 }
 }
 
+/// For how many columns room is made at once.
+const RESERVED: usize = 256;
+
 /// The information of a program at a place on the real line.
 pub(super) fn information<P: Program>(
     program: &P,
@@ -129,6 +132,7 @@ pub(super) fn information<P: Program>(
 ) -> Result<Information> {
     let mut gradient = DVector::zeros(z.len());
     let mut columns = Columns { dimension: z.len(), ..Columns::default() };
+    columns.numbers.reserve(z.len() * RESERVED);
     let density = match z.len() {
         0..=2 => fill::<Grad<2>, P>(program, z, &mut gradient, &mut columns),
         3..=4 => fill::<Grad<4>, P>(program, z, &mut gradient, &mut columns),

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::fit::{Fit, Prospect, fit, prospect, spread};
 use super::grids::even_grids;
-use super::screen::edge_grids;
+use super::screen::{COARSE, FINE, edge_grids};
 use crate::diagnosis::locate::{FreeForce, locate_all};
 use crate::error::Result;
 use crate::infer::{LaplaceMixture, Precision, Progress, SearchSpace};
@@ -60,7 +60,7 @@ pub fn attribute<P: Program>(
         Some(extent) => locate_all(program, extent, &none, seed_of)?,
         None => Vec::new(),
     };
-    let owns = owns(program, &none, &forces)?;
+    let owns = Owns::of(program, &none, &forces)?;
     progress.begin("weighing mechanisms", Some(catalogue.len() as u64));
     let all: Vec<(usize, &dyn Mechanism)> =
         catalogue.iter().map(AsRef::as_ref).enumerate().collect();
@@ -101,30 +101,37 @@ pub fn attribute<P: Program>(
     Ok(Attribution { none, forces, candidates })
 }
 
-/// Where the model's own parameters begin: at their best with nothing added,
-/// where errors may explain what is missing, and at their best with a force of
-/// free form, where it does.
-fn owns<P: Program>(
-    program: &P,
-    none: &Fit,
-    forces: &[FreeForce],
-) -> Result<Vec<Vec<f64>>> {
-    let with = With::new(program, &[]);
-    let posterior = Posterior::new(&with)?;
-    let likely = forces
-        .iter()
-        .max_by(|a, b| a.log_bayes_factor.total_cmp(&b.log_bayes_factor));
-    let open = likely.map(FreeForce::middle_of_own);
-    let rows = none.draws.thinned(DRAWN).into_iter();
-    let drawn: Vec<Vec<f64>> =
-        rows.map(|row| posterior.line(row)).collect::<Result<_>>()?;
-    let best = [none.own().to_vec()];
-    Ok(best.into_iter().chain(open).chain(tails(drawn)).collect())
+/// Where the model's own parameters begin.
+struct Owns {
+    /// At their best with nothing added, where errors may explain what is
+    /// missing, and at their best with a force of free form, where it does.
+    best: Vec<Vec<f64>>,
+    /// In the tails of each, with nothing added: the memory of the errors,
+    /// above all, decides which stretches they hide.
+    tails: Vec<Vec<f64>>,
 }
 
-/// Of how many draws of the model as it is those in the tails of each
-/// parameter are looked at: the memory of the errors, above all, decides which
-/// stretches they hide.
+impl Owns {
+    fn of<P: Program>(
+        program: &P,
+        none: &Fit,
+        forces: &[FreeForce],
+    ) -> Result<Self> {
+        let with = With::new(program, &[]);
+        let posterior = Posterior::new(&with)?;
+        let likely = forces
+            .iter()
+            .max_by(|a, b| a.log_bayes_factor.total_cmp(&b.log_bayes_factor));
+        let open = likely.map(FreeForce::middle_of_own);
+        let rows = none.draws.thinned(DRAWN).into_iter();
+        let drawn: Vec<Vec<f64>> =
+            rows.map(|row| posterior.line(row)).collect::<Result<_>>()?;
+        let best = [none.own().to_vec()].into_iter().chain(open).collect();
+        Ok(Self { best, tails: tails(drawn) })
+    }
+}
+
+/// Of how many draws of the model as it is those in the tails are taken.
 const DRAWN: usize = 400;
 
 /// The draws near the ends of each coordinate's middle 95 %.
@@ -153,16 +160,20 @@ fn precision(prospect: &Prospect, threshold: f64) -> Precision {
 fn single<P: Program>(
     program: &P,
     mechanism: &dyn Mechanism,
-    owns: &[Vec<f64>],
+    owns: &Owns,
     seed: Seed,
 ) -> Result<Prospect> {
     let with = With::new(program, &[mechanism]);
     let posterior = Posterior::new(&with)?;
     let mut space =
         SearchSpace { prior_starts: PRIOR_STARTS, ..SearchSpace::default() };
-    for (i, own) in owns.iter().enumerate() {
+    for (i, own) in owns.best.iter().enumerate() {
         let seed = seed.child(0).child(i as u64);
         space.extend(around(&posterior, mechanism, None, &[], own, seed)?);
+    }
+    for own in &owns.tails {
+        let coarse = edge_grids(&posterior, mechanism, &[], own, COARSE)?;
+        space.grids.extend(coarse);
     }
     let backend = LaplaceMixture::within(space);
     prospect(program, &[mechanism], backend, seed.child(1))
@@ -181,7 +192,7 @@ fn around(
 ) -> Result<SearchSpace> {
     let unknowns = mechanism.unknowns();
     let joined = |place: &[f64]| [before, place, after].concat();
-    let mut grids = edge_grids(posterior, mechanism, before, after)?;
+    let mut grids = edge_grids(posterior, mechanism, before, after, FINE)?;
     let climbs = if grids.is_empty() { climbs(unknowns.len()) } else { 0 };
     let anywhere = spread(&unknowns, climbs, seed.child(0));
     let places = anywhere.iter().map(|(place, _)| &place[..]);
@@ -269,7 +280,11 @@ fn fit_if_worth<P: Program>(
 ) -> Result<Option<Fit>> {
     let backend = LaplaceMixture::within(space);
     let least = hurdle - SHORT;
-    let looked = prospect(program, mechanisms, backend, seed.child(0))?;
+    let quick = prospect(program, mechanisms, backend.quick(), seed.child(0))?;
+    if !quick.may_reach(least) {
+        return Ok(None);
+    }
+    let looked = prospect(program, mechanisms, backend, seed.child(3))?;
     let found = looked.pursued(program, mechanisms, least, seed.child(2))?;
     match precision(&found, least) {
         Precision::Rough => Ok(None),

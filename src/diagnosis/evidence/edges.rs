@@ -4,9 +4,6 @@ use crate::mechanism::{Role, Unknown};
 use crate::prior::{AnyPrior, Prior};
 use crate::scalar::{Plain, Real};
 
-/// How many borders there are along a run, at most; else two for each shortest
-/// stretch.
-const BORDERS: f64 = 120.0;
 /// How near its ends, as a share of what is possible, an edge is at the most.
 const NEAR: f64 = 1e-3;
 /// How far, on the line, the next places are at the most.
@@ -25,8 +22,9 @@ pub(super) struct Edges<'a> {
 
 impl<'a> Edges<'a> {
     /// Those of an amplitude that is the first of some unknowns; `None` where
-    /// it is not confined.
-    pub(super) fn of(along: &'a [Unknown]) -> Option<Self> {
+    /// it is not confined. There are two borders for each shortest stretch,
+    /// but so many at the most.
+    pub(super) fn of(along: &'a [Unknown], most: usize) -> Option<Self> {
         let (from, length) = match along {
             [_, from] => (from, None),
             [_, from, length] => (from, Some(length)),
@@ -41,8 +39,8 @@ impl<'a> Edges<'a> {
             }
             Some(_) => return None,
         };
-        let most = 2.0 * (end - begin) / shortest;
-        let borders = most.clamp(2.0, BORDERS) as usize;
+        let enough = 2.0 * (end - begin) / shortest;
+        let borders = enough.clamp(2.0, most as f64) as usize;
         let length = length.map(|length| &length.prior);
         let from = &from.prior;
         Some(Self { from, length, begin, end, shortest, borders })

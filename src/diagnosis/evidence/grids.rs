@@ -33,8 +33,9 @@ pub(crate) fn even_grids(
         let others = Others::of(&unknowns, &along, before, after);
         even(&unknowns[along], &others, seed)
     };
-    let spread =
-        |along: &Range<usize>| Edges::of(&unknowns[along.clone()]).is_none();
+    let spread = |along: &Range<usize>| {
+        Edges::of(&unknowns[along.clone()], 2).is_none()
+    };
     mechanism.amplitudes().into_iter().filter(spread).map(one).collect()
 }
 

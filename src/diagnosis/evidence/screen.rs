@@ -29,27 +29,41 @@ const HARDLY: f64 = 0.02;
 /// The quantile of a prior that is a standard deviation above its middle.
 const DEVIATION: f64 = 0.8413;
 
-/// How far apart, in borders, places are at the least, with how many of these
-/// there are at the most: some all over the run, most where the scores are.
-const LEVELS: [(usize, usize); 3] = [(15, 8), (5, 10), (1, 14)];
+/// How closely the run is looked at.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Mesh {
+    /// How many borders there are at the most.
+    borders: usize,
+    /// How far apart, in borders, places are at the least, with how many of
+    /// these there are at the most: some all over the run, most where the
+    /// scores are.
+    levels: &'static [(usize, usize)],
+}
+
+pub(super) const FINE: Mesh =
+    Mesh { borders: 120, levels: &[(15, 8), (5, 10), (1, 14)] };
+pub(super) const COARSE: Mesh =
+    Mesh { borders: 60, levels: &[(7, 5), (1, 7)] };
 
 /// Places along the run where an edge of a confined mechanism may be, for each
 /// of its amplitudes; all other coordinates begin at `before` and `after`.
 ///
 /// # Errors
 /// What no other parameter values would mend.
-pub(crate) fn edge_grids(
+pub(super) fn edge_grids(
     posterior: &Posterior<'_>,
     mechanism: &dyn Mechanism,
     before: &[f64],
     after: &[f64],
+    mesh: Mesh,
 ) -> Result<Vec<HeldGrid>> {
     let unknowns = mechanism.unknowns();
     let mut grids = Vec::new();
     for along in mechanism.amplitudes() {
         let earlier = vec![0.0; along.start];
         let later = vec![0.0; unknowns.len() - along.end];
-        let Some(edges) = Edges::of(&unknowns[along.clone()]) else {
+        let Some(edges) = Edges::of(&unknowns[along.clone()], mesh.borders)
+        else {
             continue;
         };
         let screen = Screen {
@@ -59,7 +73,7 @@ pub(crate) fn edge_grids(
             before: [before, &earlier].concat(),
             after: [&later, after].concat(),
         };
-        grids.extend(screen.grid()?);
+        grids.extend(screen.grid(mesh)?);
     }
     Ok(grids)
 }
@@ -79,13 +93,17 @@ impl Screen<'_, '_> {
     }
 
     /// The best places; `None` where nothing can be told.
-    fn grid(&self) -> Result<Option<HeldGrid>> {
+    fn grid(&self, mesh: Mesh) -> Result<Option<HeldGrid>> {
         let Some(scores) = self.scores()? else { return Ok(None) };
-        let places = LEVELS
-            .into_iter()
-            .flat_map(|(apart, most)| {
+        let far = mesh.levels[0].0;
+        let places = mesh
+            .levels
+            .iter()
+            .flat_map(|&(apart, most)| {
                 let chosen = scores.best(apart, most).into_iter();
-                chosen.flat_map(move |one| self.places(&one, apart))
+                chosen.flat_map(move |one| {
+                    self.places(&one, apart, apart == far)
+                })
             })
             .collect();
         let first = self.before.len() + 1;
@@ -95,14 +113,14 @@ impl Screen<'_, '_> {
 
     /// A place with the amplitude that its score tells; a far one with large
     /// amplitudes of either sign too.
-    fn places(&self, one: &Scored, apart: usize) -> Vec<HeldPlace> {
+    fn places(&self, one: &Scored, apart: usize, far: bool) -> Vec<HeldPlace> {
         let prior = &self.amplitude.prior;
         let support = <AnyPrior as Prior<Plain>>::support(prior);
         let [low, high] = AMPLITUDES.map(|p| on_line(prior, p));
         let told = support.to_line(one.amplitude);
         let told = if told.is_nan() { low } else { told.clamp(low, high) };
         let large = LARGE.map(|p| on_line(prior, p));
-        let far = apart == LEVELS[0].0 && self.amplitude.is_signed();
+        let far = far && self.amplitude.is_signed();
         let further = if far { &large[..] } else { &[] };
         let (edges, spacing) = self.edges.place(one.from, one.to, apart);
         let place = |amplitude: &f64| HeldPlace {

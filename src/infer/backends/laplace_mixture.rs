@@ -72,6 +72,12 @@ impl LaplaceMixture {
         Self { schedule, ..Self::default() }
     }
 
+    /// The same with a quick search, which says whether a thorough one is worth
+    /// it.
+    pub(crate) fn quick(&self) -> Self {
+        Self { space: self.space.clone(), schedule: Schedule::quick() }
+    }
+
     /// Searches: a proposal that has learned nothing yet.
     ///
     /// # Errors

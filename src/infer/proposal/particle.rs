@@ -48,7 +48,7 @@ impl Base {
                 self.particle(posterior, mixture.draw(rng))
             }
             _ => match drawn(posterior, rng)? {
-                Some((_, z)) => self.particle(posterior, z),
+                Some((density, z)) => Ok(self.weighed(z, &density)),
                 None => Ok(Particle::without_density(posterior.dimension())),
             },
         }
