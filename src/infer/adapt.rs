@@ -15,6 +15,9 @@ use crate::seed::Seed;
 /// The most components that a round adds.
 const FITTED: usize = 6;
 
+/// How often all are weighed anew then.
+const REWEIGHTED: usize = 2;
+
 /// A proposal, and how good it is.
 #[derive(Debug, Clone)]
 pub(crate) struct Frozen {
@@ -57,20 +60,19 @@ impl Frozen {
             self.log = log_mean_weight(&found);
             self.excess = 1.0 / quality.0 - 1.0;
 
-            self = if self.round < schedule.reweighting_rounds {
-                self.reweighted(&found)
-            } else {
-                self.moved_on(posterior, &found, schedule, seed.child(1))?
-            };
+            let early = self.round < schedule.reweighting_rounds;
             self.round += 1;
+            if !early {
+                self =
+                    self.moved_on(posterior, &found, schedule, seed.child(1))?;
+                continue;
+            }
+            self.mixture = reweighted(&self.mixture, &found);
+            if schedule.is_good(quality) {
+                self.round = schedule.reweighting_rounds;
+            }
         }
         Ok(self)
-    }
-
-    /// The same with components that weigh what draws say they hold.
-    fn reweighted(mut self, found: &[Particle]) -> Self {
-        self.mixture = reweighted(&self.mixture, found);
-        self
     }
 
     /// Judged by draws and by where these are moved on to; unless it is good,
@@ -86,8 +88,9 @@ impl Frozen {
         let moved =
             Moved::on(posterior, mixture, found, schedule, seed.child(0))?;
         self.excess = self.excess.max(moved.excess);
+        let quality = quality(found);
         self.good =
-            schedule.is_good(quality(found)) && !moved.met_more(schedule);
+            schedule.is_good(quality) && !moved.met_more(quality.0, schedule);
         if !self.good {
             self.mixture = widened(mixture, &moved, seed.child(1));
         }
@@ -101,14 +104,14 @@ pub(super) fn reweighted(mixture: &Mixture, found: &[Particle]) -> Mixture {
     mixture.reweighted(places.zip(cut(found)))
 }
 
-/// A mixture with components where weighted draws say that it is far too low.
-pub(super) fn mended(mixture: &Mixture, found: &[Particle]) -> Mixture {
-    let log = log_mean_weight(found);
+/// A mixture beside one that is fitted to weighted draws.
+pub(super) fn fitted(
+    mixture: &Mixture,
+    found: &[Particle],
+    seed: Seed,
+) -> Mixture {
     let rows: Vec<Vec<f64>> = found.iter().map(|p| p.z.clone()).collect();
-    let targets: Vec<f64> =
-        found.iter().map(|p| p.log_target() - log).collect();
-    let mended = mixture.mended(&rows, &cut(found), &targets);
-    mended.unwrap_or_else(|| reweighted(mixture, found))
+    beside(mixture, &rows, &cut(found), seed)
 }
 
 /// A mixture beside one that is fitted to draws that were moved on.
@@ -118,8 +121,23 @@ pub(super) fn widened(
     seed: Seed,
 ) -> Mixture {
     let even = vec![1.0 / moved.places.len() as f64; moved.places.len()];
-    Mixture::fit(&moved.places, &even, FITTED, &mut seed.rng()).map_or_else(
-        || mixture.clone(),
-        |fitted| fitted.beside(mixture.clone()),
-    )
+    beside(mixture, &moved.places, &even, seed)
+}
+
+fn beside(
+    mixture: &Mixture,
+    rows: &[Vec<f64>],
+    weights: &[f64],
+    seed: Seed,
+) -> Mixture {
+    let fitted = Mixture::fit(rows, weights, FITTED, &mut seed.rng());
+    let mut both = match fitted {
+        Some(fitted) => fitted.beside(mixture.clone()),
+        None => mixture.clone(),
+    };
+    for _ in 0..REWEIGHTED {
+        let places = rows.iter().map(Vec::as_slice);
+        both = both.reweighted(places.zip(weights.iter().copied()));
+    }
+    both
 }

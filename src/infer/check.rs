@@ -44,11 +44,17 @@ impl Moved {
         Ok(Self { excess: (second.exp() - 1.0).max(0.0), places })
     }
 
-    /// Whether the mixture misses a place that they came to.
-    pub(super) fn met_more(&self, schedule: &Schedule) -> bool {
-        self.excess + 1.0 > 1.0 / schedule.reached_share
+    /// Whether the mixture, of such an effective share by its own draws, misses
+    /// a place that they came to.
+    pub(super) fn met_more(&self, share: f64, schedule: &Schedule) -> bool {
+        let tolerated = schedule.reached_share.min(HALF * share);
+        self.excess + 1.0 > 1.0 / tolerated
     }
 }
+
+/// Which part of the effective share has to remain by draws that were moved
+/// on: a mean of few weights scatters.
+const HALF: f64 = 0.5;
 
 #[cfg(test)]
 mod tests {
@@ -56,7 +62,7 @@ mod tests {
 
     use super::*;
     use crate::error::Outcome;
-    use crate::infer::adapt::widened;
+    use crate::infer::adapt::Frozen;
     use crate::infer::proposal::population;
     use crate::infer::weights::quality;
     use crate::model::{Label, Number, Program, Run};
@@ -96,25 +102,30 @@ mod tests {
             let base = Base::Mixture(mixture.clone());
             population(&posterior, &base, 2000, Seed::new(1)).unwrap()
         };
-        let wider = |mixture: &Mixture, found: &[Particle]| {
-            let schedule = Schedule::default();
+        let schedule = Schedule::default();
+        let met_more = |mixture: &Mixture, found: &[Particle]| {
             let seed = Seed::new(2);
             let moved = Moved::on(&posterior, mixture, found, &schedule, seed);
-            let moved = moved.unwrap();
-            moved.met_more(&schedule).then(|| widened(mixture, &moved, seed))
+            let (share, _) = quality(found);
+            moved.unwrap().met_more(share, &schedule)
         };
         let both = on(&[1.0, -1.0]);
         let all = drawn(&both);
-        assert!(wider(&both, &all).is_none());
+        assert!(!met_more(&both, &all));
         let one = on(&[1.0]);
         let half = drawn(&one);
         let short = log_mean_weight(&all) - log_mean_weight(&half);
         // Half is missed, and by the draws a fifth are effective.
         assert!((short - 2f64.ln()).abs() < 0.1, "{short}");
         let (share, _) = quality(&half);
-        assert!(share > Schedule::default().good_share, "{share}");
-        let mended = wider(&one, &half).expect("a hill is missed");
-        let found = log_mean_weight(&drawn(&mended));
+        assert!(share > schedule.good_share, "{share}");
+        assert!(met_more(&one, &half), "a hill is missed");
+        let rounds = schedule.rounds;
+        let learned = Frozen::new(one)
+            .learned(&posterior, &schedule, rounds, Seed::new(3))
+            .unwrap();
+        assert!(learned.good);
+        let found = log_mean_weight(&drawn(&learned.mixture));
         // Four standard errors of two means of 2000 draws of which a tenth
         // are effective; to miss half costs 0.7.
         let off = found - log_mean_weight(&all);

@@ -10,7 +10,7 @@
 
 use rayon::prelude::*;
 
-use super::adapt::{mended, reweighted};
+use super::adapt::{fitted, reweighted};
 use super::proposal::{Base, Mixture, Particle};
 use super::weights::{Sum, log_mean_weight, quality, summed};
 use crate::error::Result;
@@ -111,7 +111,7 @@ pub(crate) fn learn<O: Outer>(
         }
         mixture = match round {
             0 | 1 => reweighted(&mixture, &found),
-            _ => mended(&mixture, &found),
+            _ => fitted(&mixture, &found, seed.child(1)),
         };
     }
     Ok(Learned { mixture, log, share })

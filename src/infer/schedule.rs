@@ -44,8 +44,8 @@ pub(crate) struct Schedule {
     pub(crate) estimates: u64,
     /// How many draws are moved on to look for places that the proposal misses.
     pub(crate) moved: usize,
-    /// By these draws, the effective share below which a place was missed:
-    /// half of `good_share`, for a mean of few weights scatters.
+    /// By these draws, an effective share at which nothing was missed, whatever
+    /// the share by the proposal's own draws is.
     pub(crate) reached_share: f64,
     /// The standard error of ln evidence that the final draws are made for.
     pub(crate) error: f64,
@@ -93,9 +93,9 @@ impl Schedule {
 impl Default for Schedule {
     fn default() -> Self {
         Self {
-            promising: 40,
+            promising: 200,
             surveyed: 200,
-            climbed: 12,
+            climbed: 40,
             profiled: 4,
             profiled_below: 4.0,
             negligible: 10.0,
@@ -108,7 +108,7 @@ impl Default for Schedule {
             ample_share: 0.1,
             estimates: 2,
             moved: 400,
-            reached_share: 0.015,
+            reached_share: 0.05,
             error: 0.05,
             final_draws: (1000, 16_000),
             particles: 800,

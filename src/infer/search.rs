@@ -58,7 +58,7 @@ pub struct HeldPlace {
 }
 
 /// The most steps of a climb with coordinates held.
-const FEW: usize = 6;
+const FEW: usize = 10;
 
 /// The components of a proposal: peaks, held places and profiles that hold
 /// anything, most first.

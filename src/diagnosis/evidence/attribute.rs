@@ -193,7 +193,7 @@ fn around(
     let unknowns = mechanism.unknowns();
     let joined = |place: &[f64]| [before, place, after].concat();
     let mut grids = edge_grids(posterior, mechanism, before, after, FINE)?;
-    let climbs = if grids.is_empty() { climbs(unknowns.len()) } else { 0 };
+    let climbs = climbs(unknowns.len());
     let anywhere = spread(&unknowns, climbs, seed.child(0));
     let places = anywhere.iter().map(|(place, _)| &place[..]);
     let starts = known.into_iter().chain(places).map(joined).collect();

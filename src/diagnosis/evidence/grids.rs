@@ -2,8 +2,7 @@
 
 use std::ops::Range;
 
-use super::edges::Edges;
-use super::fit::spread as spread_over;
+use super::fit::spread;
 use crate::infer::{HeldGrid, HeldPlace};
 use crate::mechanism::{Mechanism, Unknown};
 use crate::seed::Seed;
@@ -13,14 +12,13 @@ fn places(held: usize) -> usize {
     match held {
         0 => 0,
         1 => 32,
-        2 => 144,
+        2 => 120,
         _ => 300,
     }
 }
 
 /// The coordinates of a mechanism along which the data may tell little, with
-/// even places along them, for each of its amplitudes that is not confined; all
-/// other coordinates
+/// even places along them, for each of its amplitudes; all other coordinates
 /// begin at `before` and `after`.
 pub(crate) fn even_grids(
     mechanism: &dyn Mechanism,
@@ -33,10 +31,7 @@ pub(crate) fn even_grids(
         let others = Others::of(&unknowns, &along, before, after);
         even(&unknowns[along], &others, seed)
     };
-    let spread = |along: &Range<usize>| {
-        Edges::of(&unknowns[along.clone()], 2).is_none()
-    };
-    mechanism.amplitudes().into_iter().filter(spread).map(one).collect()
+    mechanism.amplitudes().into_iter().map(one).collect()
 }
 
 /// Where all other coordinates begin, on the line.
@@ -77,7 +72,7 @@ fn even(along: &[Unknown], others: &Others, seed: Seed) -> HeldGrid {
     let held = (first + free..first + along.len()).collect();
     let searched = &along[free..];
     let amplitude = vec![0.0; free];
-    let places = spread_over(searched, places(searched.len()), seed)
+    let places = spread(searched, places(searched.len()), seed)
         .into_iter()
         .map(|(place, apart)| {
             let line = others.with(&[&amplitude[..], &place].concat());

@@ -23,6 +23,8 @@ const AMPLITUDES: [f64; 2] = [0.02, 0.98];
 /// correlated explain what a large amplitude explains better, and less lies
 /// between.
 const LARGE: [f64; 2] = [0.07, 0.93];
+/// The same of one that cannot be below zero.
+const ONE: [f64; 1] = [0.7];
 /// A quantile of an amplitude that cannot be below zero, where it is as good
 /// as none.
 const HARDLY: f64 = 0.02;
@@ -38,12 +40,16 @@ pub(super) struct Mesh {
     /// these there are at the most: some all over the run, most where the
     /// scores are.
     levels: &'static [(usize, usize)],
+    /// How far apart, in borders, stretches begin that last to the end, and
+    /// end that last from the beginning, with a large amplitude; none at 0.
+    /// What makes the mass stop, or run on, is not nearly linear.
+    halves: usize,
 }
 
 pub(super) const FINE: Mesh =
-    Mesh { borders: 120, levels: &[(15, 8), (5, 10), (1, 14)] };
+    Mesh { borders: 120, levels: &[(15, 8), (5, 10), (1, 14)], halves: 2 };
 pub(super) const COARSE: Mesh =
-    Mesh { borders: 60, levels: &[(7, 5), (1, 7)] };
+    Mesh { borders: 60, levels: &[(7, 5), (1, 7)], halves: 0 };
 
 /// Places along the run where an edge of a confined mechanism may be, for each
 /// of its amplitudes; all other coordinates begin at `before` and `after`.
@@ -105,10 +111,35 @@ impl Screen<'_, '_> {
                     self.places(&one, apart, apart == far)
                 })
             })
+            .chain(self.halves(mesh.halves))
             .collect();
         let first = self.before.len() + 1;
         let held = (first..first + self.edges.count()).collect();
         Ok(Some(HeldGrid { held, places }))
+    }
+
+    /// Stretches to the end, and from the beginning, with large amplitudes.
+    fn halves(&self, apart: usize) -> Vec<HeldPlace> {
+        let borders = self.edges.borders();
+        let each = (1..borders).step_by(apart.max(1));
+        let each = each.take(if apart == 0 { 0 } else { borders });
+        let ends = each.flat_map(|i| [(i, borders), (0, i)]);
+        let whole = self.edges.count() == 1;
+        ends.filter(|(_, to)| !whole || *to == borders)
+            .flat_map(|(from, to)| {
+                let (edges, spacing) = self.edges.place(from, to, apart);
+                self.large().into_iter().map(move |amplitude| HeldPlace {
+                    line: self.line(amplitude, &edges),
+                    spacing: spacing.clone(),
+                })
+            })
+            .collect()
+    }
+
+    /// Large amplitudes, of either sign where there are two.
+    fn large(&self) -> Vec<f64> {
+        let all = if self.amplitude.is_signed() { &LARGE[..] } else { &ONE };
+        all.iter().map(|p| on_line(&self.amplitude.prior, *p)).collect()
     }
 
     /// A place with the amplitude that its score tells; a far one with large
@@ -119,15 +150,13 @@ impl Screen<'_, '_> {
         let [low, high] = AMPLITUDES.map(|p| on_line(prior, p));
         let told = support.to_line(one.amplitude);
         let told = if told.is_nan() { low } else { told.clamp(low, high) };
-        let large = LARGE.map(|p| on_line(prior, p));
-        let far = far && self.amplitude.is_signed();
-        let further = if far { &large[..] } else { &[] };
+        let further = if far { self.large() } else { Vec::new() };
         let (edges, spacing) = self.edges.place(one.from, one.to, apart);
         let place = |amplitude: &f64| HeldPlace {
             line: self.line(*amplitude, &edges),
             spacing: spacing.clone(),
         };
-        std::iter::once(&told).chain(further).map(place).collect()
+        std::iter::once(&told).chain(&further).map(place).collect()
     }
 
     /// The score of every stretch.

@@ -73,7 +73,7 @@ const EFFORT: Effort =
 const JOINT: f64 = 0.25;
 
 /// After how many rounds it is given up.
-const JOINT_ROUNDS: u64 = 4;
+const JOINT_ROUNDS: u64 = 6;
 
 /// How the evidence of groups with something in common is found.
 const NESTED: &str = "importance sampling of what is in common, and of each \
