@@ -104,3 +104,87 @@ pub(super) fn concluded(
         ..Inference::default()
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+    use statrs::distribution::{Continuous, Normal as StatrsNormal};
+
+    use super::*;
+    use crate::error::Outcome;
+    use crate::infer::proposal::Mixture;
+    use crate::model::{Label, Number, Program, Run};
+    use crate::prior::{AnyPrior, Normal};
+    use crate::scalar::Real;
+
+    /// 0.5 was seen of N(x, 1), x ~ N(0, 1): x is N(0.25, 1/2) of it.
+    struct Seen;
+
+    impl Program for Seen {
+        fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
+            let prior = AnyPrior::Normal(0.0, 1.0);
+            let x = run.scalar(Label::new("x", "1"), prior)?;
+            run.observe_each(&0.5, Normal::new(x, Real::new(1.0)))
+        }
+    }
+
+    /// A proposal that fits, and what is said of its weights.
+    fn frozen(excess: f64) -> Frozen {
+        let mean = DVector::from_element(1, 0.25);
+        let part = (1.0, mean, DMatrix::from_element(1, 1, 0.5));
+        let mixture = Mixture::of([part].into_iter()).unwrap();
+        Frozen { mixture, log: 0.0, excess, good: true }
+    }
+
+    #[test]
+    fn as_many_draws_as_the_error_asks_for() {
+        let schedule = Schedule { error: 0.05, ..Schedule::default() };
+        let of = |excess: f64, precision: Precision| {
+            count(&frozen(excess), &schedule, precision)
+        };
+        // 4/n = 0.05^2, between 1000 and 6000.
+        assert!(of(4.0, Precision::Sharp).abs_diff(1600) <= 1);
+        assert_eq!(of(0.1, Precision::Sharp), 1000);
+        assert_eq!(of(1e3, Precision::Sharp), 6000);
+        assert_eq!(of(4.0, Precision::Rough), 300);
+    }
+
+    #[test]
+    fn the_evidence_is_the_known_one_with_no_less_than_the_error_seen() {
+        let posterior = Posterior::new(&Seen).unwrap();
+        let schedule = Schedule::default();
+        let known = StatrsNormal::new(0.0, 2.0_f64.sqrt()).unwrap();
+        let of = |excess: f64, precision: Precision| {
+            let frozen = frozen(excess);
+            let seed = Seed::new(4);
+            estimated(&posterior, &frozen, &schedule, precision, seed).unwrap()
+        };
+        let own = of(0.0, Precision::Sharp);
+        assert!(own.does && own.found.len() == 1000);
+        let evidence = own.made.evidence.as_ref().unwrap();
+        assert!(evidence.se > 0.0 && evidence.se < schedule.error);
+        let off = evidence.log - known.ln_pdf(0.5);
+        assert!(off.abs() < 4.0 * evidence.se, "{off} +- {}", evidence.se);
+        // Some 800 are effective, and to choose among them scatters as much.
+        let summary = own.made.draws.as_ref().map(crate::draws::summarise);
+        let x = &summary.unwrap()[0];
+        assert!((x.mean - 0.25).abs() < 4.0 * (2.0 * 0.5_f64 / 800.0).sqrt());
+        let error = (2.0_f64 / (2.0 * 800.0)).sqrt();
+        assert!((x.sd / 0.5_f64.sqrt() - 1.0).abs() < 4.0 * error);
+        assert!(own.made.warnings.is_empty());
+        // One weight of e^50.
+        let mut poor = own.found;
+        poor.push(Particle::new(vec![0.25], -50.0, 0.0));
+        let made = concluded(&posterior, &poor, Seed::new(5)).unwrap();
+        assert!(!made.warnings.is_empty());
+        // sqrt(40/6000), the error that draws moved on have seen.
+        let seen = of(40.0, Precision::Sharp).made.evidence.unwrap();
+        assert!((seen.se - (40.0_f64 / 6000.0).sqrt()).abs() < 1e-15);
+        // At the most 1; what is infinite says nothing.
+        let most = of(1e6, Precision::Rough).made.evidence.unwrap();
+        assert_eq!(most.se, 1.0);
+        let nothing = of(f64::INFINITY, Precision::Sharp);
+        let evidence = nothing.made.evidence.unwrap();
+        assert!(evidence.se > 0.0 && evidence.se < schedule.error);
+    }
+}

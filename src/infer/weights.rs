@@ -126,3 +126,139 @@ pub(crate) fn systematic(
     }
     chosen
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Draws with given importance weights, times e^`shift`.
+    fn draws(weights: &[f64], shift: f64) -> Vec<Particle> {
+        let draw = |(i, w): (usize, &f64)| {
+            // ln p - ln q is the weight, whatever ln q is.
+            let base = 0.3 * i as f64 - 1.0;
+            Particle::new(vec![0.0], base, w.ln() + base + shift)
+        };
+        weights.iter().enumerate().map(draw).collect()
+    }
+
+    fn close(found: f64, expected: f64) {
+        let limit = 1e-12 * expected.abs().max(1.0);
+        assert!((found - expected).abs() < limit, "{found} for {expected}");
+    }
+
+    fn all_close(found: &[f64], expected: &[f64]) {
+        assert_eq!(found.len(), expected.len());
+        found.iter().zip(expected).for_each(|(f, e)| close(*f, *e));
+    }
+
+    #[test]
+    fn weights_of_one_to_four_by_hand() {
+        // Beyond what a number could hold that is not a logarithm.
+        for shift in [0.0, -2000.0, 2000.0] {
+            let found = draws(&[1.0, 2.0, 3.0, 4.0], shift);
+            close(log_mean_weight(&found), 2.5_f64.ln() + shift);
+            all_close(&normalised(&found), &[0.1, 0.2, 0.3, 0.4]);
+            // (1 + 2 + 3 + 4)^2 / (1 + 4 + 9 + 16) of 4.
+            close(quality(&found).0, 100.0 / 30.0 / 4.0);
+            let sum = summed(&found).unwrap();
+            close(sum.log, 2.5_f64.ln() + shift);
+            // The standard deviation of the weights is sqrt(5/3).
+            close(sum.se, (5.0_f64 / 3.0 / 4.0).sqrt() / 2.5);
+            all_close(&sum.weights, &[0.1, 0.2, 0.3, 0.4]);
+            close(sum.effective, 100.0 / 30.0);
+        }
+    }
+
+    #[test]
+    fn a_draw_without_density_counts_with_weight_zero() {
+        let mut found = draws(&[1.0, 1.0], 0.0);
+        found.push(Particle::without_density(1));
+        found.push(Particle::without_density(1));
+        close(log_mean_weight(&found), 0.5_f64.ln());
+        all_close(&normalised(&found), &[0.5, 0.5, 0.0, 0.0]);
+        // Weights 1, 1, 0, 0 have the variance 1/3.
+        let sum = summed(&found).unwrap();
+        close(sum.se, (1.0_f64 / 3.0 / 4.0).sqrt() / 0.5);
+        let Err(error) = summed(&found[2..]) else {
+            panic!("an evidence of draws without density");
+        };
+        assert!(error.to_string().contains("positive density"), "{error}");
+    }
+
+    #[test]
+    fn a_weight_above_the_root_is_cut() {
+        let mut weights = [1.0; 9];
+        weights[8] = 92.0;
+        // Of nine, at most a third: 0.92 becomes 1/3 beside eight of 0.01.
+        let found = cut(&draws(&weights, 0.0));
+        let total = 0.08 + 1.0 / 3.0;
+        close(found[0], 0.01 / total);
+        close(found[8], 1.0 / 3.0 / total);
+        close(found.iter().sum(), 1.0);
+    }
+
+    #[test]
+    fn effective_numbers_of_powers_of_weights() {
+        let logs = [1.0, 2.0, 3.0, 4.0].map(f64::ln);
+        close(effective(&logs, 0.0), 4.0);
+        close(effective(&logs, 1.0), 100.0 / 30.0);
+        // Squares 1, 4, 9, 16 and fourth powers 1, 16, 81, 256.
+        close(effective(&logs, 2.0), 900.0 / 354.0);
+    }
+
+    #[test]
+    fn heavy_tails_are_known_and_warned_of() {
+        // Weights u^-k of even u have the tail index k.
+        let heavy = |k: f64| {
+            let weight = |i: i32| ((f64::from(i) + 0.5) / 4000.0).powf(-k);
+            draws(&(0..4000).map(weight).collect::<Vec<_>>(), 0.0)
+        };
+        for k in [0.3, 0.9] {
+            assert!((quality(&heavy(k)).1 - k).abs() < 0.1);
+        }
+        let warnings = |k| summed(&heavy(k)).unwrap().warnings;
+        assert!(warnings(0.3).is_empty());
+        assert!(warnings(0.9)[0].contains("heavy tail"));
+        // The thresholds themselves are still good.
+        assert!(warn(0.7, 2.0, 100.0).is_empty());
+        assert!(warn(0.71, 2.0, 100.0)[0].contains("k = 0.71"));
+        assert!(warn(0.7, 1.4, 100.0)[0].contains("only 1 of 100"));
+        assert_eq!(warn(0.71, 1.4, 100.0).len(), 2);
+    }
+
+    #[test]
+    fn as_many_are_chosen_as_the_weights_are_worth() {
+        let mut sum = summed(&draws(&[1.0, 3.0], 0.0)).unwrap();
+        for (effective, count) in [(3.0, 100), (100.5, 100), (400.5, 400)] {
+            sum.effective = effective;
+            let chosen = sum.chosen(Seed::new(1));
+            let second = chosen.iter().filter(|&&i| i == 1).count();
+            assert_eq!((chosen.len(), second), (count, count * 3 / 4));
+        }
+    }
+
+    #[test]
+    fn systematic_resampling_is_even_and_unbiased() {
+        // The sum is not 1, and some weigh nothing.
+        let weights = [0.0, 1.0, 2.0, 0.0, 3.0, 4.5, 0.0];
+        let (count, rounds) = (7, 4000);
+        let expected = weights.map(|w| f64::from(count) * w / 10.5);
+        let mut totals = [0.0; 7];
+        for round in 0..rounds {
+            let mut rng = Seed::new(round).rng();
+            let chosen = systematic(&weights, count as usize, &mut rng);
+            assert_eq!(chosen.len(), count as usize);
+            assert!(chosen.is_sorted());
+            for i in 0..7 {
+                let found = chosen.iter().filter(|&&c| c == i).count() as f64;
+                assert!((found - expected[i]).abs() < 1.0);
+                totals[i] += found;
+            }
+        }
+        for (total, expected) in totals.iter().zip(expected) {
+            // Either of two whole numbers: a standard deviation of 1/2.
+            let error = 0.5 / (rounds as f64).sqrt();
+            assert!((total / rounds as f64 - expected).abs() < 4.5 * error);
+        }
+    }
+}

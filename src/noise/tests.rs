@@ -6,6 +6,7 @@ use statrs::distribution::{
     Continuous, ContinuousCDF, Normal as StatrsNormal, StudentsT,
 };
 
+mod changed;
 mod double;
 
 use self::double::Double;
