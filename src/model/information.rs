@@ -11,13 +11,14 @@ use nalgebra::{DMatrix, DVector};
 
 use super::listener::{Declaration, Listener};
 use super::number::Number;
-use super::program::{Density, Program, run};
+use super::pass::run;
+use super::program::{Density, Program};
 use super::run::Source;
 use crate::error::{Error, Outcome, Result};
 use crate::noise::Noise;
 use crate::observe::Series;
 use crate::prior::Prior;
-use crate::scalar::{Grad, Kind, Real};
+use crate::scalar::{Forward, Grad, Kind, Real};
 
 /// The log density on the real line about a point, to second order.
 #[derive(Debug, Clone)]
@@ -66,7 +67,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn push<K: Kind>(&mut self, x: Real<K>) {
+    fn push<K: Forward>(&mut self, x: Real<K>) {
         let begin = self.next * self.dimension;
         if self.numbers.len() < begin + self.dimension {
             self.numbers.resize(begin + self.dimension, 0.0);
@@ -78,7 +79,7 @@ impl Columns {
     }
 }
 
-impl<K: Kind> Listener<K> for Columns {
+impl<K: Forward> Listener<K> for Columns {
     fn parameter(&mut self, declaration: &Declaration<'_, K>) {
         if self.first == 0 {
             self.bends.push(bend(declaration));
@@ -139,7 +140,7 @@ pub(super) fn information<P: Program>(
     Ok(Information { density, gradient, precision })
 }
 
-fn fill<K: Number, P: Program>(
+fn fill<K: Number + Forward, P: Program>(
     program: &P,
     z: &[f64],
     gradient: &mut DVector<f64>,

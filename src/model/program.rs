@@ -1,11 +1,11 @@
-//! From a program to a model: the one run, asked in different ways.
+//! Programs, and models as backends see them.
 
-use super::information::{Information, information};
+use super::information::Information;
 use super::listener::Listener;
 use super::number::Number;
-use super::run::{Run, SAME_PARAMETERS, Source};
-use crate::error::{Error, Outcome, Result, Stop};
-use crate::scalar::{Grad, Plain, Real};
+use super::run::Run;
+use crate::error::{Outcome, Result};
+use crate::scalar::Plain;
 use crate::seed::Rng;
 
 /// A model's body: declares parameters, scores data.
@@ -89,7 +89,7 @@ impl Density {
         self.rejected = self.rejected.or(other.rejected);
     }
 
-    fn zero(reason: &'static str, slides: u64) -> Self {
+    pub(super) fn zero(reason: &'static str, slides: u64) -> Self {
         Self {
             log_prior: f64::NEG_INFINITY,
             log_jacobian: 0.0,
@@ -156,117 +156,4 @@ pub trait Model: Sync {
     /// # Errors
     /// As [`Model::evaluate`].
     fn information(&self, z: &[f64]) -> Result<Information>;
-}
-
-impl<P: Program> Model for P {
-    fn evaluate(
-        &self,
-        point: Point<'_>,
-        listener: Option<&mut dyn Listener<Plain>>,
-    ) -> Result<Density> {
-        let (source, expected) = match point {
-            Point::Line(z) => (Source::Line { z, first: 0 }, Some(z.len())),
-            Point::Natural(x) => (Source::Natural { x }, Some(x.len())),
-            Point::Prior(rng) => (Source::Prior { rng }, None),
-            Point::Middle => (Source::Middle, None),
-        };
-        let (density, ..) = run::<Plain, P>(self, source, expected, listener)?;
-        Ok(density)
-    }
-
-    fn gradient(
-        &self,
-        z: &[f64],
-        weights: Weights,
-        gradient: &mut [f64],
-    ) -> Result<Density> {
-        match z.len() {
-            0..=2 => pass::<Grad<2>, P>(self, z, weights, gradient),
-            3..=4 => pass::<Grad<4>, P>(self, z, weights, gradient),
-            _ => pass::<Grad<8>, P>(self, z, weights, gradient),
-        }
-    }
-
-    fn information(&self, z: &[f64]) -> Result<Information> {
-        information(self, z)
-    }
-}
-
-/// The gradient, as many directions at a time as the kind carries.
-fn pass<K: Number, P: Program>(
-    program: &P,
-    z: &[f64],
-    weights: Weights,
-    gradient: &mut [f64],
-) -> Result<Density> {
-    let mut density = None;
-    let mut first = 0;
-    loop {
-        let source = Source::Line { z, first };
-        let (found, prior, jacobian, likelihood) =
-            run::<K, P>(program, source, Some(z.len()), None)?;
-        let total = prior * weights.prior
-            + jacobian * weights.jacobian
-            + likelihood * weights.likelihood;
-        for (i, slot) in gradient.iter_mut().skip(first).enumerate() {
-            if i < K::DIRECTIONS {
-                *slot = total.partial(i);
-            }
-        }
-        let slides = density.map_or(0, |d: Density| d.slides) + found.slides;
-        let zero = found.rejected.is_some();
-        density = Some(Density { slides, ..found });
-        first += K::DIRECTIONS;
-        if first >= z.len() || zero {
-            break;
-        }
-    }
-    density.ok_or_else(|| Error::inference("the model has no parameters"))
-}
-
-type Parts<K> = (Density, Real<K>, Real<K>, Real<K>);
-
-/// One run of the body, its failures sorted into density zero and the rest.
-pub(super) fn run<K: Number, P: Program>(
-    program: &P,
-    source: Source<'_>,
-    expected: Option<usize>,
-    listener: Option<&mut dyn Listener<K>>,
-) -> Result<Parts<K>> {
-    K::with_context(|context| {
-        let before = context.slides();
-        let listener = listener.map(|l| l as &mut dyn Listener<K>);
-        let mut run = Run::new(context, source, listener);
-        let outcome = program.run(&mut run);
-        let slides = context.slides() - before;
-        let parts = (run.log_prior, run.log_jacobian, run.log_likelihood);
-        let zero = |reason| {
-            let none = Real::new(0.0);
-            (Density::zero(reason, slides), none, none, none)
-        };
-        match outcome {
-            Err(Stop::Fail(error)) => return Err(error),
-            Err(Stop::Reject(reason)) => return Ok(zero(reason)),
-            Ok(()) => {}
-        }
-        if expected.is_some_and(|n| n != run.position()) {
-            return Err(Error::input(format!(
-                "there are values for {} parameters, and the model asked for \
-                 {}; {SAME_PARAMETERS}",
-                expected.unwrap_or(0),
-                run.position()
-            )));
-        }
-        let density = Density {
-            log_prior: parts.0.value(),
-            log_jacobian: parts.1.value(),
-            log_likelihood: parts.2.value(),
-            slides,
-            rejected: None,
-        };
-        if density.on_line().is_nan() {
-            return Ok(zero("the density is not a number"));
-        }
-        Ok((density, parts.0, parts.1, parts.2))
-    })
 }

@@ -354,12 +354,12 @@ fn acceleration<K: Kind, L: Friction<K>>(
 fn pack<K: Kind, const N: usize>(s: Real<K>, u: Real<K>) -> SVector<f64, N> {
     SVector::from_fn(|i, _| {
         let number = if i % 2 == 0 { s } else { u };
-        if i < 2 { number.value() } else { number.partial(i / 2 - 1) }
+        if i < 2 { number.value() } else { number.carried(i / 2 - 1) }
     })
 }
 
 fn unpack<K: Kind, const N: usize>(y: &SVector<f64, N>) -> (Real<K>, Real<K>) {
-    let number = |k: usize| Real::assemble(y[k], |i| y[2 * (i + 1) + k]);
+    let number = |k: usize| Real::carrying(y[k], |i| y[2 * (i + 1) + k]);
     (number(0), number(1))
 }
 
