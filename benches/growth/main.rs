@@ -12,10 +12,12 @@ mod reference;
 mod models;
 mod table;
 
+use std::time::Instant;
+
 use couloir::model::Model;
 use couloir::prelude::*;
 
-use models::{Hierarchy, Sections, avalanches, long_slope};
+use models::{Gappy, Hierarchy, Sections, avalanches, long_slope};
 use table::{Row, print};
 
 fn main() -> Result<()> {
@@ -28,9 +30,14 @@ fn main() -> Result<()> {
         let z: Vec<f64> = (0..256).map(|i| 0.1 * (i as f64).sin()).collect();
         let mut g = vec![0.0; 256];
         let (h, e) = (Hierarchy::new(256), Sections::new(256));
-        let m: &dyn Model = if wanted.iter().any(|w| w == "flow") { &e } else { &h };
+        let m: &dyn Model =
+            if wanted.iter().any(|w| w == "flow") { &e } else { &h };
         for _ in 0..40_000 {
-            let _ = std::hint::black_box(m.gradient(&z, couloir::model::Weights::LINE, &mut g));
+            let _ = std::hint::black_box(m.gradient(
+                &z,
+                couloir::model::Weights::LINE,
+                &mut g,
+            ));
         }
         return Ok(());
     }
@@ -40,6 +47,7 @@ fn main() -> Result<()> {
     if wants("values") {
         let sizes = [10, 100, 1_000, 10_000, 100_000];
         print("values", rows(&sizes, |n| long_slope(300, n))?);
+        print("values, AR(2), some missing", rows(&sizes, Gappy::new)?);
     }
     if wants("pieces") {
         let sizes = [10, 100, 1_000, 10_000, 100_000];
@@ -64,5 +72,11 @@ fn rows<M: Model + 'static>(
     sizes: &[usize],
     model: impl Fn(usize) -> Result<M>,
 ) -> Result<Vec<Row>> {
-    sizes.iter().map(|&size| Row::new(size, Box::new(model(size)?))).collect()
+    let row = |&size: &usize| {
+        let begun = Instant::now();
+        let model = model(size)?;
+        let seconds = begun.elapsed().as_secs_f64();
+        Row::new(size, Box::new(model), seconds)
+    };
+    sizes.iter().map(row).collect()
 }

@@ -2,7 +2,7 @@
 
 use couloir::model::Together;
 use couloir::prelude::*;
-use couloir::prior::{Gamma, HalfNormal, InverseGamma, Normal};
+use couloir::prior::{Gamma, HalfNormal, InverseGamma, Normal, Uniform};
 
 use crate::reference;
 
@@ -22,7 +22,8 @@ impl Hierarchy {
 
 impl Program for Hierarchy {
     fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
-        let mean = run.scalar(Label::new("mean", "1"), Normal::new(0.0, 5.0))?;
+        let mean =
+            run.scalar(Label::new("mean", "1"), Normal::new(0.0, 5.0))?;
         let spread =
             run.scalar(Label::new("spread", "1"), HalfNormal::new(2.0))?;
         for (i, y) in self.data.iter().enumerate() {
@@ -67,7 +68,8 @@ impl Sections {
 
 impl Program for Sections {
     fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
-        let xi = run.scalar(Label::new("xi", "m/s2"), Gamma::new(2.5, 400.0))?;
+        let xi =
+            run.scalar(Label::new("xi", "m/s2"), Gamma::new(2.5, 400.0))?;
         let mu = Label::new("mu", "1");
         let mu = run.vector(mu, self.sections, Gamma::new(9.0, 0.03))?;
         let length = self.event.track().length();
@@ -85,7 +87,8 @@ pub(crate) struct Avalanche(Event);
 impl Program for Avalanche {
     fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
         let mu = run.scalar(Label::new("mu", "1"), Gamma::new(9.0, 0.03))?;
-        let xi = run.scalar(Label::new("xi", "m/s2"), Gamma::new(2.5, 400.0))?;
+        let xi =
+            run.scalar(Label::new("xi", "m/s2"), Gamma::new(2.5, 400.0))?;
         let sigma2 = Label::new("sigma2", "m2/s2");
         let sigma2 = run.scalar(sigma2, InverseGamma::new(3.0, 20.0))?;
         let friction = run.declare(Voellmy { mu, xi });
@@ -104,18 +107,47 @@ pub(crate) fn avalanches(
     Together::new((0..events).map(member).collect())
 }
 
-/// A flow down a slope of so many pieces, recorded so often.
-pub(crate) fn long_slope(pieces: usize, values: usize) -> Result<Avalanche> {
-    let step = 2000.0 / pieces as f64;
-    let along = |i: usize| i as f64 * step;
+/// Speeds recorded so often within 50 s; with `gaps`, every tenth is missing.
+fn recorded(values: usize, gaps: bool) -> Result<Series> {
+    let at = |i: usize| (i + 1) as f64 * 50.0 / values as f64;
+    let there = (0..values).filter(|i| !gaps || i % 10 != 5);
+    let times: Vec<f64> = there.map(at).collect();
+    let count = times.len();
+    Series::velocity(times, vec![20.0; count])
+}
+
+/// A concave slope of 2 km, from 40 degrees to 7, of so many pieces.
+fn slope(pieces: usize) -> Result<Track> {
+    let along = |i: usize| i as f64 * 2000.0 / pieces as f64;
     let x: Vec<f64> = (0..=pieces).map(along).collect();
-    // Concave, from 40 degrees to 5.
-    let z: Vec<f64> =
-        x.iter().map(|x| 0.00018 * (2000.0 - x).powi(2) - 0.12 * x).collect();
-    let duration = 50.0;
-    let at = |i: usize| (i + 1) as f64 * duration / values as f64;
-    let series =
-        Series::velocity((0..values).map(at).collect(), vec![20.0; values])?;
-    let track = Track::from_points(&x, &z)?;
-    Ok(Avalanche(Event::on(track).velocity(series).build()?))
+    let height = |x: &f64| 0.00018 * (2000.0 - x).powi(2) - 0.12 * x;
+    Track::from_points(&x, &x.iter().map(height).collect::<Vec<_>>())
+}
+
+/// One avalanche over so many pieces, recorded so often.
+pub(crate) fn long_slope(pieces: usize, values: usize) -> Result<Avalanche> {
+    let series = recorded(values, false)?;
+    Ok(Avalanche(Event::on(slope(pieces)?).velocity(series).build()?))
+}
+
+/// The same with errors of second order and values missing.
+pub(crate) struct Gappy(Event);
+
+impl Gappy {
+    pub(crate) fn new(values: usize) -> Result<Self> {
+        let series = recorded(values, true)?;
+        Ok(Self(Event::on(slope(300)?).velocity(series).build()?))
+    }
+}
+
+impl Program for Gappy {
+    fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
+        let mu = run.scalar(Label::new("mu", "1"), Gamma::new(9.0, 0.03))?;
+        let phi = Label::new("phi", "1");
+        let phi = run.vector(phi, 2, Uniform::new(-1.0, 1.0))?;
+        let friction = run.declare(Coulomb { mu });
+        let errors = run.declare(Ar { phi, sigma2: Real::new(9.0) });
+        let flow = self.0.slide(&friction)?;
+        run.observe(&self.0.velocity, flow.velocity(), &errors)
+    }
 }

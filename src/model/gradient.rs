@@ -7,8 +7,10 @@ use super::run::Source;
 use crate::error::{Error, Result};
 use crate::scalar::{Forward, Grad, Real, Recording, Reverse};
 
-/// How many parameters a model has from which on the tape is faster.
-const REVERSE_FROM: usize = 24;
+/// How many parameters a model has from which on the tape is faster: one pass
+/// of 8 directions costs less than the tape, two cost more, whatever the
+/// model (`cargo bench --bench growth -- parameters`).
+const REVERSE_FROM: usize = 9;
 
 /// The density at a place on the real line, and the gradient of its weighted
 /// logarithm there.
@@ -20,7 +22,10 @@ pub(super) fn gradient<P: Program>(
 ) -> Result<Density> {
     static FROM: std::sync::OnceLock<usize> = std::sync::OnceLock::new();
     let from = *FROM.get_or_init(|| {
-        std::env::var("REV").ok().and_then(|s| s.parse().ok()).unwrap_or(REVERSE_FROM)
+        std::env::var("REV")
+            .ok()
+            .and_then(|s| s.parse().ok())
+            .unwrap_or(REVERSE_FROM)
     });
     match z.len() {
         n if n >= from => match reverse(program, z, weights, gradient)? {
@@ -29,9 +34,6 @@ pub(super) fn gradient<P: Program>(
         },
         0..=2 => forward::<Grad<2>, P>(program, z, weights, gradient),
         3..=4 => forward::<Grad<4>, P>(program, z, weights, gradient),
-        5..REVERSE_FROM => {
-            forward::<Grad<8>, P>(program, z, weights, gradient)
-        }
         _ => forward::<Grad<8>, P>(program, z, weights, gradient),
     }
 }

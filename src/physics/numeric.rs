@@ -35,8 +35,12 @@ const LAST_MOVE: f64 = 1e-10;
 
 /// How many components (s, u) and their derivatives take: two each.
 pub(crate) const PLAIN: usize = 2;
-/// The same with derivatives in up to eight directions.
-pub(crate) const WITH_DERIVATIVES: usize = 18;
+/// Directions that are few: an integrator over as many as there can be would
+/// carry more zeros than numbers.
+pub(crate) const FEW: usize = 8;
+/// The same with derivatives in few directions, and in up to sixteen.
+pub(crate) const WITH_FEW: usize = 18;
+pub(crate) const WITH_MANY: usize = 34;
 
 /// The walker of laws that vary with the speed; a state has `N` components.
 pub(crate) struct NumericWalker<'a, K: Kind, L, const N: usize> {

@@ -17,9 +17,6 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use super::Real;
 use super::kind::Kind;
 
-/// The node of a number that depends on no variable.
-const NONE: u32 = u32::MAX;
-
 /// No recording takes place.
 const NOTHING: u32 = 0;
 /// The recording of a number that none can follow.
@@ -40,9 +37,12 @@ pub struct Reverse;
 #[derive(Clone, Copy, Debug)]
 pub struct Traced {
     value: f64,
+    /// The derivative by the node.
     slope: f64,
-    node: u32,
-    recording: u32,
+    /// The recording, above 32 bits for the node of its tape; 0 where the
+    /// number depends on no variable. One word, since a number is copied in
+    /// words and would wait for two halves of one.
+    place: u64,
 }
 
 /// What two numbers were made into: their nodes, and its slopes by these.
@@ -99,8 +99,8 @@ impl Sheet {
         if count % SHEET == SHEET - 1 {
             self.file();
         }
-        let recording = self.recording.get();
-        Traced { value, slope: 1.0, node: count as u32, recording }
+        let recording = u64::from(self.recording.get());
+        Traced { value, slope: 1.0, place: recording << 32 | count as u64 }
     }
 
     /// Puts what is written onto the tape.
@@ -138,12 +138,18 @@ impl Traced {
     /// A number with derivatives that no tape knows.
     #[cold]
     fn lost(value: f64) -> Self {
-        Self { value, slope: f64::NAN, node: 0, recording: LOST }
+        let place = u64::from(LOST) << 32;
+        Self { value, slope: f64::NAN, place }
     }
 
     #[inline(always)]
-    fn is_same_node(&self, other: &Self) -> bool {
-        self.node == other.node && self.recording == other.recording
+    fn recording(&self) -> u32 {
+        (self.place >> 32) as u32
+    }
+
+    #[inline(always)]
+    fn node(&self) -> u32 {
+        self.place as u32
     }
 
     /// A number made of two, with the slopes by their nodes. Numbers of
@@ -152,10 +158,10 @@ impl Traced {
     fn join(value: f64, of: [&Self; 2], slopes: [f64; 2]) -> Self {
         WRITTEN.with(|sheet| {
             let recording = sheet.recording.get();
-            if of.iter().any(|x| x.recording != recording) {
+            if of.iter().any(|x| x.recording() != recording) {
                 return Self::lost(value);
             }
-            let parents = of.map(|x| x.node);
+            let parents = of.map(Self::node);
             sheet.write(value, Node { parents, slopes })
         })
     }
@@ -168,7 +174,7 @@ impl Kind for Reverse {
 
     #[inline(always)]
     fn constant(value: f64) -> Traced {
-        Traced { value, slope: 0.0, node: NONE, recording: NOTHING }
+        Traced { value, slope: 0.0, place: 0 }
     }
 
     fn variable(value: f64, direction: usize) -> Traced {
@@ -201,7 +207,7 @@ impl Kind for Reverse {
 
     #[inline(always)]
     fn is_constant(x: &Traced) -> bool {
-        x.node == NONE || x.slope == 0.0
+        x.place == 0 || x.slope == 0.0
     }
 
     #[inline(always)]
@@ -223,7 +229,7 @@ impl Kind for Reverse {
             x
         } else if Self::is_constant(&x) {
             y
-        } else if x.is_same_node(&y) {
+        } else if x.place == y.place {
             Traced { slope: x.slope + y.slope, ..x }
         } else {
             Traced::join(value, [&x, &y], [x.slope, y.slope])
@@ -279,7 +285,7 @@ impl Recording {
         if Reverse::is_constant(x) {
             return true;
         }
-        if WRITTEN.with(|sheet| x.recording != sheet.recording.get()) {
+        if WRITTEN.with(|sheet| x.recording() != sheet.recording.get()) {
             return false;
         }
         WRITTEN.with(Sheet::file);
@@ -303,7 +309,7 @@ impl Recording {
 
     /// The derivatives of a number by the nodes up to its own.
     fn sweep(&self, nodes: &[Node], x: &Traced, adjoints: &mut Vec<f64>) {
-        let nodes = &nodes[self.first_node..=x.node as usize];
+        let nodes = &nodes[self.first_node..=x.node() as usize];
         adjoints.clear();
         adjoints.resize(nodes.len(), 0.0);
         adjoints[nodes.len() - 1] = x.slope;
@@ -330,5 +336,114 @@ impl Drop for Recording {
         TAPE.with(|tape| {
             tape.variables.borrow_mut().truncate(self.first_variable);
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Grad;
+    use super::*;
+
+    type Number = Real<Reverse>;
+
+    /// A function over any kind of number.
+    trait Function {
+        fn of<K: Kind>(&self, x: &[Real<K>]) -> Real<K>;
+
+        fn backwards(&self, at: &[f64]) -> Option<Vec<f64>> {
+            let recording = Recording::begin();
+            let x = at.iter().enumerate();
+            let x: Vec<_> = x.map(|(i, &v)| Real::variable(v, i)).collect();
+            let mut gradient = vec![0.0; at.len()];
+            recording
+                .gradient(&self.of::<Reverse>(&x), &mut gradient)
+                .then_some(gradient)
+        }
+
+        fn forward(&self, at: &[f64]) -> Vec<f64> {
+            let x = at.iter().enumerate();
+            let x: Vec<Real<Grad<4>>> =
+                x.map(|(i, &v)| Real::variable(v, i)).collect();
+            let y = self.of(&x);
+            (0..at.len()).map(|i| y.partial(i)).collect()
+        }
+    }
+
+    struct Mixed;
+
+    impl Function for Mixed {
+        fn of<K: Kind>(&self, x: &[Real<K>]) -> Real<K> {
+            let mut sum = Real::new(0.0);
+            // Some thousands of nodes: several sheets.
+            for i in 0..1000 {
+                let angle = x[0] * f64::from(i) + x[1] / x[2];
+                sum += angle.sin() * x[3] - x[0] * x[0];
+                sum += (x[1].max(x[2]) * 1e-3).exp() / (1.0 + sum * sum);
+            }
+            let terms = [(x[0], 2.0), (x[1], -1.0), (x[0], 0.5)];
+            sum + Real::combine(2.0, terms) + 0.0 * x[1]
+        }
+    }
+
+    #[test]
+    fn the_gradient_is_the_forward_one() {
+        let at = [0.3, 1.7, 1.1, -0.4];
+        let (found, known) =
+            (Mixed.backwards(&at).unwrap(), Mixed.forward(&at));
+        for (a, b) in found.iter().zip(&known) {
+            // Round-off of a thousand terms.
+            assert!((a - b).abs() < 1e-12 * known[0].abs(), "{a} {b}");
+        }
+        // Nothing is left over.
+        assert_eq!(WRITTEN.with(|sheet| sheet.count.get()), 0);
+        assert_eq!(Mixed.backwards(&at).unwrap(), found);
+    }
+
+    #[test]
+    fn recordings_within_recordings_stand_apart() {
+        let at = [0.3, 1.7, 1.1, -0.4];
+        let alone = Mixed.backwards(&at).unwrap();
+        let outer = Recording::begin();
+        let x = Number::variable(3.0, 0);
+        let mut product = x;
+        for i in 0..700 {
+            product = product * 0.9 + x.sin() * f64::from(i % 3);
+            if i % 100 == 0 {
+                assert_eq!(Mixed.backwards(&at).unwrap(), alone);
+            }
+        }
+        let mut slope = [0.0];
+        assert!(outer.gradient(&(product * x), &mut slope));
+        let y = Real::<Grad<1>>::variable(3.0, 0);
+        let known = (0..700)
+            .fold(y, |product, i| product * 0.9 + y.sin() * f64::from(i % 3));
+        let known = (known * y).partial(0);
+        assert!((slope[0] - known).abs() < 1e-13 * known.abs());
+    }
+
+    #[test]
+    fn numbers_of_elsewhere_are_lost() {
+        let stray = Number::variable(1.0, 0);
+        let own = Recording::begin();
+        let x = Number::variable(2.0, 0);
+        let mut slope = [0.0];
+        assert!(own.gradient(&x.squared(), &mut slope));
+        assert_eq!(slope, [4.0]);
+        assert!(!own.gradient(&(x * stray), &mut slope));
+        let inner = Recording::begin();
+        let y = Number::variable(5.0, 0);
+        assert!(!inner.gradient(&(y * x), &mut slope));
+        drop(inner);
+        assert!(!own.gradient(&(x + y), &mut slope));
+        let moved = std::thread::spawn(move || x * x.exp() + 1.0 / x);
+        let merged = moved.join().unwrap();
+        assert!(own.gradient(&merged, &mut slope), "one node all along");
+        let z = Number::variable(7.0, 1);
+        let moved = std::thread::spawn(move || x * z);
+        let lost = moved.join().unwrap();
+        assert_eq!(lost.value(), 14.0);
+        assert!(!own.gradient(&(lost + x), &mut slope));
+        assert!(own.gradient(&(x * 0.0 + 3.0), &mut slope));
+        assert_eq!(slope, [0.0]);
     }
 }
