@@ -7,10 +7,11 @@ use super::run::Source;
 use crate::error::{Error, Result};
 use crate::scalar::{Forward, Grad, Real, Recording, Reverse};
 
-/// How many parameters a model has from which on the tape is faster: one pass
-/// of 8 directions costs less than the tape, two cost more, whatever the
-/// model (`cargo bench --bench growth -- parameters`).
-const REVERSE_FROM: usize = 9;
+/// How many parameters a model has from which on the tape is faster. It costs
+/// 3 to 6 densities, and a pass of 8 directions costs 1.6 to 2.8: two passes
+/// are about as much, three are more, whatever the model
+/// (`cargo bench --bench growth -- parameters events`).
+const REVERSE_FROM: usize = 17;
 
 /// The density at a place on the real line, and the gradient of its weighted
 /// logarithm there.
@@ -20,21 +21,16 @@ pub(super) fn gradient<P: Program>(
     weights: Weights,
     gradient: &mut [f64],
 ) -> Result<Density> {
-    static FROM: std::sync::OnceLock<usize> = std::sync::OnceLock::new();
-    let from = *FROM.get_or_init(|| {
-        std::env::var("REV")
-            .ok()
-            .and_then(|s| s.parse().ok())
-            .unwrap_or(REVERSE_FROM)
-    });
     match z.len() {
-        n if n >= from => match reverse(program, z, weights, gradient)? {
+        0..=2 => forward::<Grad<2>, P>(program, z, weights, gradient),
+        3..=4 => forward::<Grad<4>, P>(program, z, weights, gradient),
+        n if n < REVERSE_FROM => {
+            forward::<Grad<8>, P>(program, z, weights, gradient)
+        }
+        _ => match reverse(program, z, weights, gradient)? {
             Some(density) => Ok(density),
             None => forward::<Grad<8>, P>(program, z, weights, gradient),
         },
-        0..=2 => forward::<Grad<2>, P>(program, z, weights, gradient),
-        3..=4 => forward::<Grad<4>, P>(program, z, weights, gradient),
-        _ => forward::<Grad<8>, P>(program, z, weights, gradient),
     }
 }
 

@@ -81,18 +81,18 @@ impl Slopes {
         pace: &Pace<K>,
         force: &Force<K>,
     ) -> (Pace<K>, Real<K>) {
-        let (a, c) = (force.a, force.c);
+        let (a, c) = (&force.a, &force.c);
         let w = Real::combine(
             w1,
-            [(a, self.w_a[i]), (c, self.w_c[i]), (pace.w, self.w_w[i])],
+            [(a, self.w_a[i]), (c, self.w_c[i]), (&pace.w, self.w_w[i])],
         );
         let after = Real::combine(
             after,
             [
                 (a, self.t_a[i]),
                 (c, self.t_c[i]),
-                (pace.u, self.t_u[i]),
-                (w, self.t_w[i]),
+                (&pace.u, self.t_u[i]),
+                (&w, self.t_w[i]),
             ],
         );
         (Pace { u: w.chain(u1, self.u_w[i]), w }, after)

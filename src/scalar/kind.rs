@@ -170,9 +170,9 @@ impl<const N: usize> Kind for Grad<N> {
         terms: [(&Dual<N>, f64); M],
     ) -> Dual<N> {
         let mut partials = [0.0; N];
-        for (x, slope) in terms {
-            for (p, x) in partials.iter_mut().zip(&x.partials) {
-                *p = fused(slope, *x, *p);
+        for (i, p) in partials.iter_mut().enumerate() {
+            for (x, slope) in &terms {
+                *p = fused(*slope, x.partials[i], *p);
             }
         }
         Dual { value, partials }

@@ -77,9 +77,9 @@ impl<K: Kind> Real<K> {
     #[inline(always)]
     pub fn combine<const M: usize>(
         value: f64,
-        terms: [(Self, f64); M],
+        terms: [(&Self, f64); M],
     ) -> Self {
-        let terms = terms.each_ref().map(|(x, slope)| (&x.0, *slope));
+        let terms = terms.map(|(x, slope)| (&x.0, slope));
         Self(K::combine(value, terms))
     }
 

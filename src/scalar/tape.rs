@@ -380,7 +380,7 @@ mod tests {
                 sum += angle.sin() * x[3] - x[0] * x[0];
                 sum += (x[1].max(x[2]) * 1e-3).exp() / (1.0 + sum * sum);
             }
-            let terms = [(x[0], 2.0), (x[1], -1.0), (x[0], 0.5)];
+            let terms = [(&x[0], 2.0), (&x[1], -1.0), (&x[0], 0.5)];
             sum + Real::combine(2.0, terms) + 0.0 * x[1]
         }
     }
