@@ -8,9 +8,9 @@ use crate::error::{Error, Result};
 use crate::scalar::{Forward, Grad, Real, Recording, Reverse};
 
 /// How many parameters a model has from which on the tape is faster. It costs
-/// 3 to 6 densities, and a pass of 8 directions costs 1.6 to 2.8: two passes
-/// are about as much, three are more, whatever the model
-/// (`cargo bench --bench growth -- parameters events`).
+/// 3 to 8 densities, and a pass of 8 directions costs 2 to 3: one or two
+/// passes are less or as much, three of them are seldom less and up to twice
+/// as much (`cargo bench --bench growth -- parameters events`).
 const REVERSE_FROM: usize = 17;
 
 /// The density at a place on the real line, and the gradient of its weighted

@@ -13,18 +13,7 @@
 use std::f64::consts::PI;
 
 use super::elementary::{atanhc, coshc, expc, lnc, sinhc, tanhc};
-use crate::scalar::{Grad, Kind, Real};
-
-/// A function's value and slope; the slope is not worked out where it is not
-/// used.
-#[inline(always)]
-fn with_slope(
-    f: impl Fn(Real<Grad<1>>) -> Real<Grad<1>>,
-    x: f64,
-) -> (f64, f64) {
-    let f = f(Real::variable(x, 0));
-    (f.value(), f.partial(0))
-}
+use crate::scalar::{Kind, Real};
 
 /// The coefficients of du/dt = a - b u - c u^2.
 #[derive(Debug, Clone, Copy)]
@@ -32,58 +21,6 @@ pub(crate) struct Force<K: Kind> {
     pub(crate) a: Real<K>,
     pub(crate) b: Real<K>,
     pub(crate) c: Real<K>,
-}
-
-/// What a crossing was worked out from; see above.
-struct Solved {
-    u0: f64,
-    w0: f64,
-    /// E and its derivative by c, and e.
-    spread: f64,
-    spread_c: f64,
-    decay: f64,
-    u1: f64,
-    w1: f64,
-    q: f64,
-    z: f64,
-    /// The derivative of atanh(sqrt z)/sqrt z.
-    bent: f64,
-    after: f64,
-}
-
-impl Solved {
-    /// `None` where the mass stops on the way, or the stretch is long.
-    #[inline(always)]
-    fn new([a, c, l]: [f64; 3], [u0, w0]: [f64; 2]) -> Option<Self> {
-        let x = c * l * 2.0;
-        let (near, near_slope) = with_slope(expc, x);
-        let spread = near * l * 2.0;
-        let spread_c = near_slope * l * l * 4.0;
-        let decay = 1.0 - c * spread;
-        let w1 = w0 * decay + a * spread;
-        if w1 <= 0.0 || x.abs() > FAR {
-            return None;
-        }
-        let u1 = w1.sqrt();
-        let q = spread / (u1 + u0 * decay);
-        let z = a * c * q * q;
-        let (slowed, bent) = with_slope(atanhc, z);
-        let after = q * slowed;
-        let solved = Self {
-            u0,
-            w0,
-            spread,
-            spread_c,
-            decay,
-            u1,
-            w1,
-            q,
-            z,
-            bent,
-            after,
-        };
-        Some(solved)
-    }
 }
 
 /// A speed u with its square w, which the solution over distance needs.
@@ -145,61 +82,24 @@ impl<K: Kind> Force<K> {
 
     /// Crosses a finite stretch, b = 0: the arrival at its far border and the
     /// time it takes; `None` where the mass stops on the way, or the stretch
-    /// is long (see [`Force::cross_far`]). The slopes are those of `slopes`,
-    /// with dw1/dl = 2 (a - c w1) and dT/dl = 1/u1.
+    /// is long (see [`Force::cross_far`]).
     #[inline(always)]
     pub(crate) fn cross(
         &self,
         pace: Pace<K>,
         length: Real<K>,
     ) -> Option<(Pace<K>, Real<K>)> {
-        let [a, c, l] = [self.a, self.c, length].map(Real::value);
-        let solved = Solved::new([a, c, l], [pace.u.value(), pace.w.value()])?;
-        if K::DIFFERENTIATES {
-            return Some(self.sloped(&solved, &pace, length));
+        let (a, c) = (self.a, self.c);
+        let x = c * length * 2.0;
+        let spread = expc(x) * length * 2.0;
+        let decay = 1.0 - c * spread;
+        let w = pace.w * decay + a * spread;
+        if w.value() <= 0.0 || x.value().abs() > FAR {
+            return None;
         }
-        let [u, w, after] =
-            [solved.u1, solved.w1, solved.after].map(Real::new);
-        Some((Pace { u, w }, after))
-    }
-
-    /// A crossing with its derivatives.
-    #[inline(always)]
-    fn sloped(
-        &self,
-        of: &Solved,
-        pace: &Pace<K>,
-        length: Real<K>,
-    ) -> (Pace<K>, Real<K>) {
-        let (a, c, l) = (self.a.value(), self.c.value(), length.value());
-        let Solved { spread, spread_c, decay, u0, u1, w1, q, z, .. } = *of;
-        let lost = 2.0 * l * decay;
-        let w_c = a * spread_c - lost * of.w0;
-        let w = Real::combine(
-            w1,
-            [
-                (&pace.w, decay),
-                (&self.a, spread),
-                (&self.c, w_c),
-                (&length, 2.0 * (a - c * w1)),
-            ],
-        );
-        let part = 1.0 / ((u1 + u0 * decay) * (1.0 - z));
-        let swift = q * q * q * of.bent;
-        let t_w = -0.5 * q * part / u1;
-        let t_c = part * (spread_c + q * u0 * lost) + swift * a;
-        // Of what the arrival depends on, without a way through it.
-        let after = Real::combine(
-            of.after,
-            [
-                (&pace.u, -q * part * decay),
-                (&pace.w, t_w * decay),
-                (&self.a, swift * c + t_w * spread),
-                (&self.c, t_c + t_w * w_c),
-                (&length, 1.0 / u1),
-            ],
-        );
-        (Pace { u: w.chain(u1, 0.5 / u1), w }, after)
+        let u = w.sqrt();
+        let q = spread / (u + pace.u * decay);
+        Some((Pace { u, w }, q * atanhc(a * c * q * q)))
     }
 
     #[inline(never)]
@@ -285,37 +185,12 @@ impl<K: Kind> Force<K> {
         self.a * self.c + 0.25 * self.b * self.b
     }
 
-    /// The speed after time `t` on the leg, u1 = ((a - b u/2) g + u)/d with
-    /// d = (c u + b/2) g + 1, g = tanh(r t)/r and r^2 = b^2/4 + a c. Its slopes
-    /// are (1 - r^2 g^2)/d^2 by u, du/dt by t, and (a - b u - c u^2)/d^2 by g.
+    /// The speed after time `t` on the leg.
     #[inline]
     pub(crate) fn speed_after(&self, u: Real<K>, t: Real<K>) -> Real<K> {
-        let [a, b, c] = [self.a, self.b, self.c].map(Real::value);
-        let (u0, after) = (u.value(), t.value());
-        let half = 0.5 * b;
-        let squared = a * c + half * half;
-        let (near, near_slope) = with_slope(tanhc, squared * after * after);
-        let g = near * after;
-        let below = (c * u0 + half) * g + 1.0;
-        let u1 = ((a - half * u0) * g + u0) / below;
-        if !K::DIFFERENTIATES {
-            return Real::new(u1);
-        }
-        let gain = |u: f64| a - (b + c * u) * u;
-        // By r^2, of which a c and b^2/4 are parts.
-        let by_g = gain(u0) / (below * below);
-        let by_squared = by_g * near_slope * after * after * after;
-        let direct = g / below;
-        Real::combine(
-            u1,
-            [
-                (&u, (1.0 - squared * g * g) / (below * below)),
-                (&t, gain(u1)),
-                (&self.a, direct + by_squared * c),
-                (&self.c, by_squared * a - direct * u0 * u1),
-                (&self.b, 0.5 * (by_squared * b - direct * (u0 + u1))),
-            ],
-        )
+        let g = tanhc(self.discriminant() * t * t) * t;
+        let half = 0.5 * self.b;
+        ((self.a - half * u) * g + u) / ((self.c * u + half) * g + 1.0)
     }
 
     /// The distance covered after time `t` on the leg.
