@@ -4,6 +4,7 @@
 //! All evaluations of an inference pass through here, so that what a result
 //! cost is counted in one place.
 
+use std::collections::HashSet;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use super::information::Information;
@@ -72,12 +73,12 @@ impl<'m> Posterior<'m> {
         if found.names.is_empty() {
             return Err(Error::input("the model has no parameters"));
         }
-        for (i, name) in found.names.iter().enumerate() {
-            if found.names[..i].contains(name) {
-                return Err(Error::input(format!(
-                    "two parameters are called {name}; rename one"
-                )));
-            }
+        let mut seen = HashSet::new();
+        if let Some(name) = found.names.iter().find(|name| !seen.insert(*name))
+        {
+            return Err(Error::input(format!(
+                "two parameters are called {name}; rename one"
+            )));
         }
         let parts = found.names.into_iter().zip(found.units);
         Ok(Self {
