@@ -1,8 +1,9 @@
 //! Gradients of the log density: forward, or backwards along a tape.
 
+use super::density::{Density, Weights};
 use super::number::Number;
 use super::pass::run;
-use super::program::{Density, Program, Weights};
+use super::program::Program;
 use super::run::Source;
 use crate::error::{Error, Result};
 use crate::scalar::{Forward, Grad, Real, Recording, Reverse};

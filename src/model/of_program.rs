@@ -1,11 +1,12 @@
 //! Every program is a model: the one run, asked in different ways.
 
+use super::density::{Density, Weights};
 use super::information::Information;
 use super::listener::Listener;
 use super::pass::run;
-use super::program::{Density, Model, Point, Program, Weights};
+use super::program::{Model, Point, Program};
 use super::run::Source;
-use super::{gradient, information};
+use super::{fisher, gradient};
 use crate::error::Result;
 use crate::scalar::Plain;
 
@@ -35,6 +36,6 @@ impl<P: Program> Model for P {
     }
 
     fn information(&self, z: &[f64]) -> Result<Information> {
-        information::information(self, z)
+        fisher::information(self, z)
     }
 }

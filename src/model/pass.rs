@@ -1,8 +1,9 @@
 //! One run of a program's body, and what came of it.
 
+use super::density::Density;
 use super::listener::Listener;
 use super::number::Number;
-use super::program::{Density, Program};
+use super::program::Program;
 use super::run::{Run, SAME_PARAMETERS, Source};
 use crate::error::{Error, Result, Stop};
 use crate::scalar::Real;

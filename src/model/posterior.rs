@@ -7,9 +7,10 @@
 use std::collections::HashSet;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
+use super::density::{Density, Weights};
 use super::information::Information;
 use super::listener::{Collected, Collector, Places};
-use super::program::{Density, Model, Point, Weights};
+use super::program::{Model, Point};
 use super::run::SAME_PARAMETERS;
 use crate::error::{Error, Result};
 use crate::seed::Rng;
