@@ -17,8 +17,8 @@ pub trait Program: Sync {
     /// Runs the body.
     ///
     /// # Errors
-    /// [`Stop::Reject`] gives the point density zero, [`Stop::Fail`] ends
-    /// the inference.
+    /// [`Stop::Reject`](crate::error::Stop::Reject) gives the point density
+    /// zero, [`Stop::Fail`](crate::error::Stop::Fail) ends the inference.
     fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome;
 
     /// How many events the body passes to [`Run::of_event`], where inference
