@@ -11,7 +11,7 @@ use std::ops::Range;
 use super::Change;
 use crate::physics::forces::Axis;
 use crate::prior::AnyPrior;
-use crate::scalar::{Grad, Kind, Plain, Real};
+use crate::scalar::{Grad, Kind, Plain, Real, Reverse};
 
 /// What sort of thing a mechanism changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -258,6 +258,7 @@ pub trait Mechanism:
     + ChangeOf<Grad<4>>
     + ChangeOf<Grad<8>>
     + ChangeOf<Grad<16>>
+    + ChangeOf<Reverse>
 {
     /// What of it concerns one of several events.
     fn of_event(&self, _event: usize) -> Concern {
@@ -304,7 +305,7 @@ macro_rules! change_kind {
         })*
     };
 }
-change_kind!(Plain, Grad<2>, Grad<4>, Grad<8>, Grad<16>);
+change_kind!(Plain, Grad<2>, Grad<4>, Grad<8>, Grad<16>, Reverse);
 
 #[cfg(test)]
 mod tests {

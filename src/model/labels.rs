@@ -1,5 +1,7 @@
 //! What the parameters of several events are called by.
 
+use std::collections::{HashMap, HashSet};
+
 /// How many characters a label has at the most, and of how many words.
 const LONGEST: usize = 16;
 const WORDS: usize = 3;
@@ -24,7 +26,8 @@ pub(super) fn labels<'n>(names: impl Iterator<Item = &'n str>) -> Vec<String> {
         names.iter().map(own).collect()
     };
     let differ = |labels: &Vec<String>| {
-        (1..labels.len()).all(|i| !labels[..i].contains(&labels[i]))
+        let mut seen = HashSet::new();
+        labels.iter().all(|label| seen.insert(label))
     };
     (1..=WORDS).map(of).find(differ).unwrap_or_else(|| numbered(of(1)))
 }
@@ -36,18 +39,23 @@ fn short(name: &str) -> String {
     if short.is_empty() { "event".into() } else { short }
 }
 
+/// Each with the first number that no other label has.
 fn numbered(names: Vec<String>) -> Vec<String> {
-    let mut labels: Vec<String> = Vec::new();
-    for short in names {
-        let mut label = short.clone();
-        let mut number = 1;
-        while labels.contains(&label) {
-            number += 1;
-            label = format!("{short}-{number}");
+    let mut taken = HashSet::new();
+    // Of each name the numbers up to this one are taken.
+    let mut last = HashMap::new();
+    let free = |short: String| loop {
+        let number = last.entry(short.clone()).or_insert(0);
+        *number += 1;
+        let label = match *number {
+            1 => short.clone(),
+            number => format!("{short}-{number}"),
+        };
+        if taken.insert(label.clone()) {
+            break label;
         }
-        labels.push(label);
-    }
-    labels
+    };
+    names.into_iter().map(free).collect()
 }
 
 #[cfg(test)]

@@ -1,13 +1,13 @@
 //! The kinds of number that models are evaluated with.
 //!
-//! A model's body is generic; it is compiled for plain numbers and for three
-//! widths of gradient. More parameters than the widest take several passes.
+//! A model's body is generic; it is compiled for plain numbers, for four
+//! widths of gradient and for the tape.
 
 use crate::context::Context;
 use crate::mechanism::ChangeKind;
 use crate::noise::NoiseKind;
 use crate::physics::friction::LawKind;
-use crate::scalar::{Grad, Kind, Plain};
+use crate::scalar::{Grad, Kind, Plain, Reverse};
 
 /// A kind of number with a home for its buffers on every thread.
 pub trait Number: Kind + LawKind + NoiseKind + ChangeKind {
@@ -31,4 +31,4 @@ macro_rules! number {
         })*
     };
 }
-number!(Plain, Grad<2>, Grad<4>, Grad<8>, Grad<16>);
+number!(Plain, Grad<2>, Grad<4>, Grad<8>, Grad<16>, Reverse);

@@ -4,11 +4,13 @@
 //! All evaluations of an inference pass through here, so that what a result
 //! cost is counted in one place.
 
+use std::collections::HashSet;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
+use super::density::{Density, Weights};
 use super::information::Information;
 use super::listener::{Collected, Collector, Places};
-use super::program::{Density, Model, Point, Weights};
+use super::program::{Model, Point};
 use super::run::SAME_PARAMETERS;
 use crate::error::{Error, Result};
 use crate::seed::Rng;
@@ -72,12 +74,12 @@ impl<'m> Posterior<'m> {
         if found.names.is_empty() {
             return Err(Error::input("the model has no parameters"));
         }
-        for (i, name) in found.names.iter().enumerate() {
-            if found.names[..i].contains(name) {
-                return Err(Error::input(format!(
-                    "two parameters are called {name}; rename one"
-                )));
-            }
+        let mut seen = HashSet::new();
+        if let Some(name) = found.names.iter().find(|name| !seen.insert(*name))
+        {
+            return Err(Error::input(format!(
+                "two parameters are called {name}; rename one"
+            )));
         }
         let parts = found.names.into_iter().zip(found.units);
         Ok(Self {

@@ -274,6 +274,7 @@ impl<'r, K: Kind> Run<'r, K> {
         Ok(x)
     }
 
+    #[inline]
     fn value<P: Prior<K>>(
         &mut self,
         prior: &P,

@@ -6,7 +6,7 @@ use std::marker::PhantomData;
 use super::{Ar, Iid, Noise, Student};
 use crate::block::{Block, Field};
 use crate::error::{Error, Stop};
-use crate::scalar::{Grad, Kind, Plain, Real};
+use crate::scalar::{Grad, Kind, Plain, Real, Reverse};
 
 /// The longest list a noise may have: an order above says that the residuals
 /// are not noise, and costs in the order cubed where values are missing.
@@ -32,6 +32,7 @@ pub trait NoiseEntry:
     + NoiseFor<Grad<4>>
     + NoiseFor<Grad<8>>
     + NoiseFor<Grad<16>>
+    + NoiseFor<Reverse>
     + Debug
     + Send
     + Sync
@@ -59,7 +60,7 @@ macro_rules! noise_kind {
         })*
     };
 }
-noise_kind!(Plain, Grad<2>, Grad<4>, Grad<8>, Grad<16>);
+noise_kind!(Plain, Grad<2>, Grad<4>, Grad<8>, Grad<16>, Reverse);
 
 /// Lists the noises: each is one entry here and one file.
 macro_rules! catalogue {

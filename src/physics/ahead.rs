@@ -57,7 +57,7 @@ impl Ahead {
             return None;
         }
         let values = [self.u[at], self.w[at], self.after[at]];
-        if K::DIRECTIONS > 0 {
+        if K::DIFFERENTIATES {
             return Some(self.slopes.crossing(at, values, pace, force));
         }
         let [u, w, after] = values.map(Real::new);
@@ -81,7 +81,7 @@ impl Ahead {
             x[i] = c * length[i] * 2.0;
             a[i] = along * pull[i] - across * load[i] - constant;
         }
-        let sloped = K::DIRECTIONS > 0;
+        let sloped = K::DIFFERENTIATES;
         let (mut spread, mut spread_c) = expc(&x, sloped);
         let (mut decay, mut gain) = ([0.0; EIGHT], [0.0; EIGHT]);
         for i in 0..EIGHT {

@@ -35,8 +35,12 @@ const LAST_MOVE: f64 = 1e-10;
 
 /// How many components (s, u) and their derivatives take: two each.
 pub(crate) const PLAIN: usize = 2;
-/// The same with derivatives in up to eight directions.
-pub(crate) const WITH_DERIVATIVES: usize = 18;
+/// Directions that are few: an integrator over as many as there can be would
+/// carry more zeros than numbers.
+pub(crate) const FEW: usize = 8;
+/// The same with derivatives in few directions, and in up to sixteen.
+pub(crate) const WITH_FEW: usize = 18;
+pub(crate) const WITH_MANY: usize = 34;
 
 /// The walker of laws that vary with the speed; a state has `N` components.
 pub(crate) struct NumericWalker<'a, K: Kind, L, const N: usize> {
@@ -354,12 +358,12 @@ fn acceleration<K: Kind, L: Friction<K>>(
 fn pack<K: Kind, const N: usize>(s: Real<K>, u: Real<K>) -> SVector<f64, N> {
     SVector::from_fn(|i, _| {
         let number = if i % 2 == 0 { s } else { u };
-        if i < 2 { number.value() } else { number.partial(i / 2 - 1) }
+        if i < 2 { number.value() } else { number.carried(i / 2 - 1) }
     })
 }
 
 fn unpack<K: Kind, const N: usize>(y: &SVector<f64, N>) -> (Real<K>, Real<K>) {
-    let number = |k: usize| Real::assemble(y[k], |i| y[2 * (i + 1) + k]);
+    let number = |k: usize| Real::carrying(y[k], |i| y[2 * (i + 1) + k]);
     (number(0), number(1))
 }
 

@@ -15,7 +15,7 @@
 
 use super::eight::{EIGHT, Eight};
 use super::exact::{Force, Pace};
-use crate::scalar::{Kind, Real, fused};
+use crate::scalar::{Kind, Real};
 
 /// What eight crossings were worked out from.
 pub(super) struct Solved {
@@ -81,18 +81,20 @@ impl Slopes {
         pace: &Pace<K>,
         force: &Force<K>,
     ) -> (Pace<K>, Real<K>) {
-        let (a, c) = (force.a, force.c);
-        let w = Real::assemble(w1, |n| {
-            let steady = self.w_a[i] * a.partial(n);
-            let dragged = fused(self.w_c[i], c.partial(n), steady);
-            fused(self.w_w[i], pace.w.partial(n), dragged)
-        });
-        let after = Real::assemble(after, |n| {
-            let steady = self.t_a[i] * a.partial(n);
-            let dragged = fused(self.t_c[i], c.partial(n), steady);
-            let entered = fused(self.t_u[i], pace.u.partial(n), dragged);
-            fused(self.t_w[i], w.partial(n), entered)
-        });
+        let (a, c) = (&force.a, &force.c);
+        let w = Real::combine(
+            w1,
+            [(a, self.w_a[i]), (c, self.w_c[i]), (&pace.w, self.w_w[i])],
+        );
+        let after = Real::combine(
+            after,
+            [
+                (a, self.t_a[i]),
+                (c, self.t_c[i]),
+                (&pace.u, self.t_u[i]),
+                (&w, self.t_w[i]),
+            ],
+        );
         (Pace { u: w.chain(u1, self.u_w[i]), w }, after)
     }
 }

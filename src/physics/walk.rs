@@ -10,7 +10,7 @@ use super::changed::ChangedWalker;
 use super::exact::{End, Force, Pace};
 use super::forces::Forces;
 use super::friction::{Friction, Rate, Site, Varies};
-use super::numeric::{NumericWalker, PLAIN, WITH_DERIVATIVES};
+use super::numeric::{FEW, NumericWalker, PLAIN, WITH_FEW, WITH_MANY};
 use super::resistance::Even;
 use super::skim::{Crossing, Entry, skim_even};
 use super::track::{Piece, Track};
@@ -102,8 +102,12 @@ pub fn sample<K: Kind, L: Friction<K>>(
             let walker = NumericWalker::<K, L, PLAIN>::new;
             visit_times(walker(path, law, release)?, times, speed_only, visit)
         }
+        Varies::WithSpeed if K::DIRECTIONS <= FEW => {
+            let walker = NumericWalker::<K, L, WITH_FEW>::new;
+            visit_times(walker(path, law, release)?, times, speed_only, visit)
+        }
         Varies::WithSpeed => {
-            let walker = NumericWalker::<K, L, WITH_DERIVATIVES>::new;
+            let walker = NumericWalker::<K, L, WITH_MANY>::new;
             visit_times(walker(path, law, release)?, times, speed_only, visit)
         }
         _ => {
@@ -153,9 +157,12 @@ pub fn rest<K: Kind, L: Friction<K>>(
         Varies::WithSpeed if K::DIRECTIONS == 0 => {
             follow(NumericWalker::<K, L, PLAIN>::new(path, law, release)?)
         }
-        Varies::WithSpeed => follow(
-            NumericWalker::<K, L, WITH_DERIVATIVES>::new(path, law, release)?,
-        ),
+        Varies::WithSpeed if K::DIRECTIONS <= FEW => {
+            follow(NumericWalker::<K, L, WITH_FEW>::new(path, law, release)?)
+        }
+        Varies::WithSpeed => {
+            follow(NumericWalker::<K, L, WITH_MANY>::new(path, law, release)?)
+        }
         _ => follow(ExactWalker::new(path, law, release)?),
     }
 }

@@ -9,11 +9,10 @@ use crate::scalar::{Kind, Real};
 #[inline]
 pub(super) fn ln_gamma<K: Kind>(x: Real<K>) -> Real<K> {
     let value = gamma::ln_gamma(x.value());
-    if (0..K::DIRECTIONS).any(|i| x.partial(i) != 0.0) {
-        x.chain(value, gamma::digamma(x.value()))
-    } else {
-        Real::new(value)
+    if x.is_constant() {
+        return Real::new(value);
     }
+    x.chain(value, gamma::digamma(x.value()))
 }
 
 /// ln(1 + q^2) without overflow.

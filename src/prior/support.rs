@@ -38,21 +38,12 @@ impl<K: Kind> Support<K> {
     /// assert_eq!(x.value(), 1.0_f64.exp());
     /// assert_eq!(log_jacobian.value(), 1.0);
     /// ```
+    #[inline(always)]
     pub fn from_line(&self, z: Real<K>) -> (Real<K>, Real<K>) {
         match *self {
             Self::Line => (z, Real::new(0.0)),
             Self::Above(low) => (low + z.exp(), z),
-            Self::Between(low, high) => {
-                // The smaller of s = logistic(z) and 1 - s, so that nothing
-                // cancels and no exponential overflows.
-                let a = -z.abs();
-                let e = a.exp();
-                let width = high - low;
-                let part = width * (e / (1.0 + e));
-                let x = if z < 0.0 { low + part } else { high - part };
-                // ln(s (1 - s)) = -|z| - 2 ln(1 + e^-|z|).
-                (x, a - 2.0 * e.ln_1p() + width.ln())
-            }
+            Self::Between(low, high) => between(z, low, high),
         }
     }
 
@@ -83,4 +74,21 @@ impl<K: Kind> Support<K> {
         let least = low.next_up().max(low + f64::MIN_POSITIVE);
         x.max(least).min(high.next_down())
     }
+}
+
+/// The place between two ends, with ln |dx/dz|.
+fn between<K: Kind>(
+    z: Real<K>,
+    low: Real<K>,
+    high: Real<K>,
+) -> (Real<K>, Real<K>) {
+    // The smaller of s = logistic(z) and 1 - s, so that nothing cancels and no
+    // exponential overflows.
+    let a = -z.abs();
+    let e = a.exp();
+    let width = high - low;
+    let part = width * (e / (1.0 + e));
+    let x = if z < 0.0 { low + part } else { high - part };
+    // ln(s (1 - s)) = -|z| - 2 ln(1 + e^-|z|).
+    (x, a - 2.0 * e.ln_1p() + width.ln())
 }

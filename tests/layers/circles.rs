@@ -20,7 +20,6 @@ const LEFT: &[&[&str]] = &[
     &["draws/ess", "draws/rhat", "draws/summary"],
     &["infer", "infer/convergence"],
     &["infer/groups/"],
-    &["model/information", "model/program"],
     &["model/listener", "model/run"],
     &["noise/ar/"],
     &["observe/event", "observe/extent", "observe/flow"],

@@ -9,7 +9,7 @@ use std::fmt::Debug;
 use super::{Friction, Rate, Site, Varies};
 use crate::block::{Field, Named};
 use crate::error::{Error, Result};
-use crate::scalar::{Grad, Kind, Plain, Real};
+use crate::scalar::{Grad, Kind, Plain, Real, Reverse};
 
 /// A law whose parameters are given as a slice.
 pub trait RateOf<K: Kind> {
@@ -26,6 +26,7 @@ pub trait Law:
     + RateOf<Grad<4>>
     + RateOf<Grad<8>>
     + RateOf<Grad<16>>
+    + RateOf<Reverse>
     + Debug
     + Sync
 {
@@ -101,7 +102,7 @@ macro_rules! law_kind {
         })*
     };
 }
-law_kind!(Plain, Grad<2>, Grad<4>, Grad<8>, Grad<16>);
+law_kind!(Plain, Grad<2>, Grad<4>, Grad<8>, Grad<16>, Reverse);
 
 /// The laws that an event file may name: the built-in ones and a user's own.
 #[derive(Debug, Clone)]

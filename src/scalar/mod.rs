@@ -3,7 +3,9 @@
 //! Everything between the unknowns and the log density is written once, over
 //! [`Real<K>`]. With `K =` [`Plain`] it is an `f64` and costs the same; with
 //! `K =` [`Grad<N>`] it carries its partial derivatives in `N` directions
-//! (forward-mode dual numbers), so gradients come out exact, to round-off.
+//! (forward-mode dual numbers), so gradients come out exact, to round-off;
+//! with `K =` [`Reverse`] it is recorded how it was formed, and derivatives in
+//! any number of directions are found from the end backwards.
 //!
 //! Comparisons look at the value alone, literals combine from both sides:
 //!
@@ -15,7 +17,9 @@
 //! assert_eq!((y.value(), y.partial(0)), (19.0, 12.0));
 //! ```
 
-use std::fmt::Debug;
+mod kind;
+mod tape;
+
 use std::iter::Sum;
 use std::ops::{
     Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Rem, Sub, SubAssign,
@@ -23,140 +27,9 @@ use std::ops::{
 
 use num_traits::{NumAssignOps, NumOps, One, Zero};
 
-/// What a [`Real`] carries besides its value.
-///
-/// A kind is an arithmetic: it says how sums, products and functions of
-/// numbers are formed. [`Plain`] forms values, [`Grad`] values with
-/// derivatives. Vector lanes would be one more kind.
-pub trait Kind: Copy + Debug + Default + Send + Sync + 'static {
-    /// How a number is stored.
-    type Repr: Copy + Debug + Send + Sync;
-    /// How many partial derivatives a number carries.
-    const DIRECTIONS: usize;
-
-    /// A number with no dependence on the directions.
-    fn constant(value: f64) -> Self::Repr;
-    /// A number that is the coordinate along `direction`.
-    fn variable(value: f64, direction: usize) -> Self::Repr;
-    /// A number of given value and partial derivatives.
-    fn assemble(value: f64, partial: impl Fn(usize) -> f64) -> Self::Repr;
-    /// The value of a number.
-    fn value(x: &Self::Repr) -> f64;
-    /// Its derivative along `direction`; 0 outside the kind's directions.
-    fn partial(x: &Self::Repr, direction: usize) -> f64;
-    /// A number of given value whose derivatives are `slope` times `x`'s:
-    /// the chain rule for a function of one variable.
-    fn chain(x: &Self::Repr, value: f64, slope: f64) -> Self::Repr;
-    /// The chain rule for a function of two variables.
-    fn chain2(
-        x: &Self::Repr,
-        y: &Self::Repr,
-        value: f64,
-        slope_x: f64,
-        slope_y: f64,
-    ) -> Self::Repr;
-}
-
-/// The kind of ordinary numbers.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Plain;
-
-/// The kind of numbers with `N` partial derivatives.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Grad<const N: usize>;
-
-impl Kind for Plain {
-    type Repr = f64;
-    const DIRECTIONS: usize = 0;
-
-    #[inline(always)]
-    fn constant(value: f64) -> f64 {
-        value
-    }
-    #[inline(always)]
-    fn variable(value: f64, _: usize) -> f64 {
-        value
-    }
-    #[inline(always)]
-    fn assemble(value: f64, _: impl Fn(usize) -> f64) -> f64 {
-        value
-    }
-    #[inline(always)]
-    fn value(x: &f64) -> f64 {
-        *x
-    }
-    #[inline(always)]
-    fn partial(_: &f64, _: usize) -> f64 {
-        0.0
-    }
-    #[inline(always)]
-    fn chain(_: &f64, value: f64, _: f64) -> f64 {
-        value
-    }
-    #[inline(always)]
-    fn chain2(_: &f64, _: &f64, value: f64, _: f64, _: f64) -> f64 {
-        value
-    }
-}
-
-/// A value with its derivatives, the store of [`Grad`].
-#[derive(Clone, Copy, Debug)]
-pub struct Dual<const N: usize> {
-    value: f64,
-    partials: [f64; N],
-}
-
-impl<const N: usize> Kind for Grad<N> {
-    type Repr = Dual<N>;
-    const DIRECTIONS: usize = N;
-
-    #[inline(always)]
-    fn constant(value: f64) -> Dual<N> {
-        Dual { value, partials: [0.0; N] }
-    }
-    #[inline(always)]
-    fn variable(value: f64, direction: usize) -> Dual<N> {
-        let mut partials = [0.0; N];
-        if let Some(slot) = partials.get_mut(direction) {
-            *slot = 1.0;
-        }
-        Dual { value, partials }
-    }
-    #[inline(always)]
-    fn assemble(value: f64, partial: impl Fn(usize) -> f64) -> Dual<N> {
-        Dual { value, partials: std::array::from_fn(partial) }
-    }
-    #[inline(always)]
-    fn value(x: &Dual<N>) -> f64 {
-        x.value
-    }
-    #[inline(always)]
-    fn partial(x: &Dual<N>, direction: usize) -> f64 {
-        x.partials.get(direction).copied().unwrap_or(0.0)
-    }
-    #[inline(always)]
-    fn chain(x: &Dual<N>, value: f64, slope: f64) -> Dual<N> {
-        let mut partials = x.partials;
-        for p in &mut partials {
-            *p *= slope;
-        }
-        Dual { value, partials }
-    }
-    #[inline(always)]
-    fn chain2(
-        x: &Dual<N>,
-        y: &Dual<N>,
-        value: f64,
-        slope_x: f64,
-        slope_y: f64,
-    ) -> Dual<N> {
-        let mut partials = [0.0; N];
-        for (i, p) in partials.iter_mut().enumerate() {
-            *p = fused(slope_x, x.partials[i], slope_y * y.partials[i]);
-        }
-        Dual { value, partials }
-    }
-}
+pub use kind::{Forward, Grad, Kind, Plain, fused};
+pub(crate) use tape::Recording;
+pub use tape::Reverse;
 
 /// The number of a model's body, of kind `K`.
 #[derive(Clone, Copy, Debug)]
@@ -175,21 +48,10 @@ impl<K: Kind> Real<K> {
         Self(K::variable(value, direction))
     }
 
-    /// A number of given value and partial derivatives.
-    pub fn assemble(value: f64, partial: impl Fn(usize) -> f64) -> Self {
-        Self(K::assemble(value, partial))
-    }
-
     /// The value, without derivatives.
     #[inline(always)]
     pub fn value(self) -> f64 {
         K::value(&self.0)
-    }
-
-    /// The derivative along `direction`.
-    #[inline(always)]
-    pub fn partial(self, direction: usize) -> f64 {
-        K::partial(&self.0, direction)
     }
 
     /// f(self) for a function with the given value and derivative here.
@@ -208,6 +70,17 @@ impl<K: Kind> Real<K> {
         other_slope: f64,
     ) -> Self {
         Self(K::chain2(&self.0, &other.0, value, slope, other_slope))
+    }
+
+    /// A function of several numbers with the given value here, each number
+    /// with the function's partial derivative by it.
+    #[inline(always)]
+    pub fn combine<const M: usize>(
+        value: f64,
+        terms: [(&Self, f64); M],
+    ) -> Self {
+        let terms = terms.map(|(x, slope)| (&x.0, slope));
+        Self(K::combine(value, terms))
     }
 
     /// Square root.
@@ -340,8 +213,42 @@ impl<K: Kind> Real<K> {
     /// Whether this is 0 and stays 0 along every direction.
     #[inline(always)]
     pub fn is_constantly_zero(self) -> bool {
-        self.value() == 0.0
-            && (0..K::DIRECTIONS).all(|i| self.partial(i) == 0.0)
+        self.value() == 0.0 && self.is_constant()
+    }
+
+    /// Whether this is known to have no derivatives but 0.
+    #[inline(always)]
+    pub fn is_constant(self) -> bool {
+        K::is_constant(&self.0)
+    }
+
+    /// The derivatives that the number carries with it; none for kinds that
+    /// carry none.
+    #[inline(always)]
+    pub(crate) fn carried(self, direction: usize) -> f64 {
+        K::partial(&self.0, direction)
+    }
+
+    /// A number that carries given derivatives, of kinds that can.
+    #[inline(always)]
+    pub(crate) fn carrying(
+        value: f64,
+        partial: impl Fn(usize) -> f64,
+    ) -> Self {
+        Self(K::assemble(value, partial))
+    }
+}
+
+impl<K: Forward> Real<K> {
+    /// A number of given value and partial derivatives.
+    pub fn assemble(value: f64, partial: impl Fn(usize) -> f64) -> Self {
+        Self::carrying(value, partial)
+    }
+
+    /// The derivative along `direction`.
+    #[inline(always)]
+    pub fn partial(self, direction: usize) -> f64 {
+        self.carried(direction)
     }
 
     /// Whether the value and all derivatives are finite.
@@ -591,12 +498,6 @@ impl<T> Arithmetic for T where
         + Neg<Output = Self>
         + PartialOrd
 {
-}
-
-/// a b + c, in one rounding where the machine does that in one step.
-#[inline(always)]
-pub fn fused(a: f64, b: f64, c: f64) -> f64 {
-    if cfg!(target_feature = "fma") { a.mul_add(b, c) } else { a * b + c }
 }
 
 /// Horner's scheme: c\[0\] + x (c\[1\] + x (c\[2\] + ...)).

@@ -1,0 +1,138 @@
+//! The Fisher information of a model at a point: how sharply its data tell
+//! its parameters.
+//!
+//! With standardised innovations d_i and their scales s_i, the log likelihood
+//! is -sum(d_i^2/2 + ln s_i), and the expectation of minus its Hessian is
+//! about sum(dd_i dd_i' + dln s_i dln s_i'), from first derivatives alone
+//! (Gauss and Newton's matrix, with the part of the scales). The prior adds
+//! its own curvature, parameter by parameter.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::density::Density;
+use super::information::Information;
+use super::listener::{Declaration, Listener};
+use super::number::Number;
+use super::pass::run;
+use super::program::Program;
+use super::run::Source;
+use crate::error::{Error, Outcome, Result};
+use crate::noise::Noise;
+use crate::observe::Series;
+use crate::prior::Prior;
+use crate::scalar::{Forward, Grad, Kind, Real};
+
+/// Derivatives of the innovations, one column a datum, and how the priors bend.
+#[derive(Debug, Default)]
+struct Columns {
+    dimension: usize,
+    first: usize,
+    next: usize,
+    numbers: Vec<f64>,
+    /// Minus the second derivative of each prior's log density along the line.
+    bends: Vec<f64>,
+}
+
+impl Columns {
+    fn push<K: Forward>(&mut self, x: Real<K>) {
+        let begin = self.next * self.dimension;
+        if self.numbers.len() < begin + self.dimension {
+            self.numbers.resize(begin + self.dimension, 0.0);
+        }
+        let column = &mut self.numbers[begin..begin + self.dimension];
+        let slots = column.iter_mut().skip(self.first).take(K::DIRECTIONS);
+        slots.enumerate().for_each(|(i, slot)| *slot = x.partial(i));
+        self.next += 1;
+    }
+}
+
+impl<K: Forward> Listener<K> for Columns {
+    fn parameter(&mut self, declaration: &Declaration<'_, K>) {
+        if self.first == 0 {
+            self.bends.push(bend(declaration));
+        }
+    }
+
+    fn series(
+        &mut self,
+        series: &Series,
+        residuals: &[Real<K>],
+        noise: &dyn Noise<K>,
+    ) -> Outcome {
+        noise.walk(series.grid(), residuals, &mut |value| {
+            let d = value.deviate;
+            self.push(d);
+            self.push(-value.log_density - 0.5 * d * d);
+        })
+    }
+
+    fn element(&mut self, _: f64, log_density: Real<K>, _: &dyn Prior<K>) {
+        self.push(log_density);
+    }
+}
+
+/// Minus the second derivative of a prior's log density along the line, where
+/// that is positive.
+fn bend<K: Kind>(declaration: &Declaration<'_, K>) -> f64 {
+    let support = declaration.prior.support();
+    let at = |z: f64| {
+        let (x, log_jacobian) = support.from_line(Real::new(z));
+        (declaration.prior.log_density(x) + log_jacobian).value()
+    };
+    let z = support.to_line(declaration.value);
+    let h = 1e-3;
+    let bend = (2.0 * at(z) - at(z - h) - at(z + h)) / (h * h);
+    if bend.is_finite() { bend.max(0.0) } else { 0.0 }
+}
+
+/// For how many columns room is made at once.
+const RESERVED: usize = 256;
+
+/// The information of a program at a place on the real line.
+pub(super) fn information<P: Program>(
+    program: &P,
+    z: &[f64],
+) -> Result<Information> {
+    let mut gradient = DVector::zeros(z.len());
+    let mut columns = Columns { dimension: z.len(), ..Columns::default() };
+    columns.numbers.reserve(z.len() * RESERVED);
+    let density = match z.len() {
+        0..=2 => fill::<Grad<2>, P>(program, z, &mut gradient, &mut columns),
+        3..=4 => fill::<Grad<4>, P>(program, z, &mut gradient, &mut columns),
+        5..=16 => fill::<Grad<8>, P>(program, z, &mut gradient, &mut columns),
+        _ => fill::<Grad<16>, P>(program, z, &mut gradient, &mut columns),
+    }?;
+    let bends = columns.bends;
+    let slopes = DMatrix::from_vec(z.len(), columns.next, columns.numbers);
+    let mut precision = &slopes * slopes.transpose();
+    for (i, bend) in bends.iter().take(z.len()).enumerate() {
+        precision[(i, i)] += bend;
+    }
+    Ok(Information { density, gradient, precision, slopes })
+}
+
+fn fill<K: Number + Forward, P: Program>(
+    program: &P,
+    z: &[f64],
+    gradient: &mut DVector<f64>,
+    columns: &mut Columns,
+) -> Result<Density> {
+    let mut last = None;
+    for first in (0..z.len()).step_by(K::DIRECTIONS) {
+        (columns.first, columns.next) = (first, 0);
+        let source = Source::Line { z, first };
+        let (density, prior, jacobian, likelihood) =
+            run::<K, P>(program, source, Some(z.len()), Some(columns))?;
+        let total = prior + jacobian + likelihood;
+        for i in 0..K::DIRECTIONS.min(z.len() - first) {
+            gradient[first + i] = total.partial(i);
+        }
+        let zero = density.rejected.is_some();
+        last = Some(density);
+        if zero {
+            columns.numbers.resize(columns.next * z.len(), 0.0);
+            break;
+        }
+    }
+    last.ok_or_else(|| Error::inference("the model has no parameters"))
+}
