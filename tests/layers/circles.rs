@@ -24,7 +24,6 @@ const LEFT: &[&[&str]] = &[
     &["model/listener", "model/run"],
     &["noise/ar/"],
     &["observe/event", "observe/extent", "observe/flow"],
-    &["physics/changed", "physics/numeric", "physics/walk"],
 ];
 
 /// A path of modules, from the root of the crate.
