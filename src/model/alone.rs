@@ -1,8 +1,9 @@
 //! One of several events of a program, and what all of them have in common.
 
+use super::as_model::Model;
 use super::listener::Collector;
 use super::number::Number;
-use super::program::{Model, Point, Program};
+use super::program::{Point, Program};
 use super::run::{Entered, Run};
 use crate::error::{Outcome, Result};
 use crate::mechanism::Unknown;

@@ -6,9 +6,10 @@
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
+use super::as_model::Model;
 use super::information::Information;
 use super::listener::{Collected, Collector, Places};
-use super::program::{Density, Model, Point, Weights};
+use super::program::{Density, Point, Weights};
 use super::run::SAME_PARAMETERS;
 use crate::error::{Error, Result};
 use crate::seed::Rng;

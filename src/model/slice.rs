@@ -2,10 +2,11 @@
 
 use nalgebra::DVector;
 
+use super::as_model::Model;
 use super::information::Information;
 use super::listener::{Collector, Declaration, Listener};
 use super::posterior::Posterior;
-use super::program::{Density, Model, Point, Weights};
+use super::program::{Density, Point, Weights};
 use crate::error::{Outcome, Result};
 use crate::noise::Noise;
 use crate::observe::Series;
