@@ -1,9 +1,9 @@
 //! A law's force over a range of speeds: a polynomial through five values,
 //! and the force of the exact family that moves a mass in the same way.
 //!
-//! With z from -1 to 1 over the range, the polynomial is p = c0 + c1 z + ..
-//! + c4 z^4. Beside it stands f = a - c u^2, chosen so that crossing the
-//! range takes as long, and leads as far, under either:
+//! With z from -1 to 1 over the range, the polynomial p is the sum of c_k z^k
+//! for k from 0 to 4. Beside it stands f = a - c u^2, chosen so that crossing
+//! the range takes as long, and leads as far, under either:
 //!
 //! int (1/p - 1/f) du = int (1/p - 1/f) u du = 0.
 //!
@@ -88,7 +88,8 @@ impl<K: Kind> Fitted<K> {
         let mut c = self.c;
         for lowest in 0..4 {
             for k in (lowest..4).rev() {
-                c[k] = c[k] + c[k + 1] * shift;
+                let higher = c[k + 1];
+                c[k] += higher * shift;
             }
         }
         let narrower = half / self.half;
