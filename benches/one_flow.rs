@@ -1,8 +1,10 @@
 //! How long does one simulation take, exact and numerical?
 //!
 //! What an added force costs, `force, ..`, is printed as the ratio to the same
-//! motion without it, for plain numbers and for numbers with derivatives;
-//! `cargo bench --bench one_flow -- force` prints nothing else.
+//! motion without it, and what a law costs that says it varies with the speed,
+//! `by speed, ..`, as the ratio to the same law in closed form; both for plain
+//! numbers and for numbers with derivatives. `cargo bench --bench one_flow --
+//! ratio` prints nothing else.
 
 #![allow(missing_docs, clippy::print_stdout)]
 
@@ -14,11 +16,13 @@ use std::time::Instant;
 use criterion::{Criterion, criterion_group, criterion_main};
 
 use couloir::physics::forces::{Axis, Range, STEPS, Shape, Stretch, Term};
-use couloir::physics::friction::{LawKind, Laws, VelocityWeakening, Voellmy};
-use couloir::physics::{
-    Forces, Friction, Rate, State, sample, sample_changed,
+use couloir::physics::friction::{
+    LawKind, Laws, Turbulent, VelocityWeakening, Voellmy,
 };
-use couloir::scalar::{Grad, Plain, Real};
+use couloir::physics::{
+    Forces, Friction, Rate, Site, State, Sum, Varies, sample, sample_changed,
+};
+use couloir::scalar::{Grad, Kind, Plain, Real};
 
 fn slide(criterion: &mut Criterion, name: &str, law: &impl Friction<Plain>) {
     let event = reference::event();
@@ -44,7 +48,63 @@ fn flows(criterion: &mut Criterion) {
     slide(criterion, "flow, exact", &voellmy);
     let weakening =
         VelocityWeakening { mu: number(0.5), r: number(0.6), u0: number(8.0) };
-    slide(criterion, "flow, Dormand-Prince", &weakening);
+    slide(criterion, "flow, by speed", &weakening);
+}
+
+/// Voellmy's law, said to vary with the speed in a way of its own.
+struct BySpeed<L>(L);
+
+impl<K: Kind, L: Friction<K>> Friction<K> for BySpeed<L> {
+    fn varies(&self) -> Varies {
+        Varies::WithSpeed
+    }
+    fn rate(&self, at: &Site, speed: Real<K>) -> Rate<K> {
+        self.0.rate(at, speed)
+    }
+}
+
+/// Voellmy's drag and a friction that weakens, as strong in the middle.
+fn weakening_drag<K: Kind>() -> impl Friction<K> {
+    let number = |value, i| Real::<K>::variable(value, i);
+    let [mu, r] = [number(0.35, 0), number(0.6, 2)];
+    let dry = VelocityWeakening { mu, r, u0: number(8.0, 3) };
+    Sum::new(dry, Turbulent { xi: number(390.0, 1) })
+}
+
+/// The seconds of some simulations under a law.
+fn seconds_under<K: Kind>(law: &impl Friction<K>) -> f64 {
+    let event = reference::event();
+    let (path, release) = (event.path(), event.release());
+    let mut sum = 0.0;
+    let mut visit = |s: State<K>| sum += s.speed.value();
+    let begun = Instant::now();
+    for _ in 0..200 {
+        let (law, times) = (black_box(law), event.velocity.times());
+        let done = sample(&path, law, release, times, true, &mut visit);
+        assert!(done.is_ok());
+    }
+    black_box(sum);
+    begun.elapsed().as_secs_f64()
+}
+
+/// Prints the ratios of the shortest of interleaved runs.
+fn by_speed_over_exact<K: Kind>(kind: &str) {
+    let [mu, xi] = [(0.25, 0), (390.0, 1)];
+    let [mu, xi] = [mu, xi].map(|(value, i)| Real::<K>::variable(value, i));
+    let exact = Voellmy { mu, xi };
+    let mut least = [f64::INFINITY; 3];
+    for _ in 0..40 {
+        let now = [
+            seconds_under(&exact),
+            seconds_under(&BySpeed(exact)),
+            seconds_under(&weakening_drag::<K>()),
+        ];
+        least = std::array::from_fn(|i| least[i].min(now[i]));
+    }
+    let [exact, same, weakening] = least;
+    let (same, weakening) = (same / exact, weakening / exact);
+    println!("by speed, Voellmy, {kind}: {same:.1} times closed form");
+    println!("by speed, weakening drag, {kind}: {weakening:.1} times");
 }
 
 /// Forces as mechanisms add them; the edges are unknown, too.
@@ -115,6 +175,9 @@ fn with_over_without<K: LawKind>(kind: &str, name: &str) {
 }
 
 fn ratios(_: &mut Criterion) {
+    by_speed_over_exact::<Plain>("plain");
+    by_speed_over_exact::<Grad<8>>("8 derivatives");
+    by_speed_over_exact::<Grad<16>>("16 derivatives");
     for name in ["patch", "surge", "hardening", "weakening", "cells"] {
         with_over_without::<Plain>("plain", name);
         with_over_without::<Grad<8>>("8 derivatives", name);

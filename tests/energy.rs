@@ -68,8 +68,8 @@ fn drawn(law: &LawSum, rng: &mut Rng) -> Vec<Real> {
         .collect()
 }
 
-/// What a state may be wrong by, relative: round-off, or ten times the
-/// tolerance of the integration and of its interpolant.
+/// What a state may be wrong by, relative: round-off, or what the legs of an
+/// integration, of 1e-12 each, add up to.
 fn slack(law: &impl Friction<Plain>) -> f64 {
     if law.varies() == Varies::WithSpeed { 1e-8 } else { 1e-12 }
 }

@@ -239,8 +239,8 @@ fn sums_of_many_laws_have_exact_gradients() {
 
 #[test]
 fn integrated_laws_have_gradients_to_the_integrators_error() {
-    // A step's error is 1e-12, and a difference's step some 1 % of a number's
-    // size: 1e-10 of a slope, times a few hundred steps.
+    // A leg's error is 1e-12, and a difference's step some 1 % of a number's
+    // size: 1e-10 of a slope, times a few hundred legs.
     let mut tally = Tally::default();
     for (case, law) in
         sums(|varies| varies == Varies::WithSpeed).into_iter().enumerate()

@@ -10,10 +10,12 @@
 //! - [`words`], [`page`], [`challenge_json`] and [`PowerTable`] tell it.
 
 mod case;
+mod cases;
 mod effects;
 mod files;
 mod ground;
 mod json;
+mod moments;
 mod motion;
 mod page;
 mod power;
@@ -22,7 +24,8 @@ mod score;
 mod trial;
 mod visible;
 
-pub use case::{Case, Coordinate, Interval, Mix, Recording, Truth, cases};
+pub use case::{Case, Coordinate, Interval, Mix, Recording, Truth};
+pub use cases::cases;
 pub use effects::Class;
 pub use json::challenge_json;
 pub use page::{page, power_page, words};

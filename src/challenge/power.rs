@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use super::case::{Case, Mix, branch};
+use super::case::{Case, Mix};
+use super::cases::branch;
 use super::effects::{CATALOGUE, Kind, OUTSIDE};
 use super::scenery::{Order, draw};
 use super::score::{Outcome, Share};

@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 use super::effects::Nothing;
 use super::ground::Ground;
-use super::motion::{Law, Start, slide};
+use super::moments::Start;
+use super::motion::{Law, slide};
 
 /// The time step of the search \[s\]: steps end on every border, so that
 /// these are as good as the noise asks for.

@@ -113,6 +113,30 @@ fn row(name: &'static str, found: Inference) -> Row {
     Row { name, effective: least(|s| s.ess_bulk), rhat: most, found }
 }
 
+/// A backend's line of the table.
+fn line(row: &Row) -> String {
+    let number = |x: Option<f64>, digits: usize| {
+        x.filter(|x| x.is_finite())
+            .map_or("-".to_owned(), |x| format!("{x:.digits$}"))
+    };
+    let evidence = row
+        .found
+        .evidence
+        .as_ref()
+        .map_or("-".into(), |e| format!("{:.2} +- {:.2}", e.log, e.se));
+    format!(
+        "{:12} {:7.2} {:9} {:>7} {:>8} {:>8} {:>6} {:>16}\n",
+        row.name,
+        row.found.cost.seconds,
+        row.found.cost.simulations,
+        number(row.effective, 0),
+        number(row.per_second(), 0),
+        number(row.per_simulation(), 4),
+        number(row.rhat, 3),
+        evidence,
+    )
+}
+
 fn tell(title: &str, rows: &[Row]) -> String {
     let mut text = wrapped(title, width());
     text.push_str(&format!(
@@ -127,25 +151,7 @@ fn tell(title: &str, rows: &[Row]) -> String {
         "ln evidence"
     ));
     for row in rows {
-        let number = |x: Option<f64>, digits: usize| {
-            x.filter(|x| x.is_finite())
-                .map_or("-".to_owned(), |x| format!("{x:.digits$}"))
-        };
-        let evidence =
-            row.found.evidence.as_ref().map_or("-".into(), |e| {
-                format!("{:.2} +- {:.2}", e.log, e.se)
-            });
-        text.push_str(&format!(
-            "{:12} {:7.2} {:9} {:>7} {:>8} {:>8} {:>6} {:>16}\n",
-            row.name,
-            row.found.cost.seconds,
-            row.found.cost.simulations,
-            number(row.effective, 0),
-            number(row.per_second(), 0),
-            number(row.per_simulation(), 4),
-            number(row.rhat, 3),
-            evidence,
-        ));
+        text.push_str(&line(row));
     }
     for row in rows {
         if let Some(mode) = &row.found.mode {

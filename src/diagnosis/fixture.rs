@@ -111,6 +111,11 @@ fn mechanisms() -> Vec<Judged> {
         ),
         judged("none", Hypothesis::Baseline, 1e-20, 0.0, vec![]),
     ];
+    all.extend(improbable());
+    all
+}
+
+fn improbable() -> impl Iterator<Item = Judged> {
     let rest = [
         ("initial-velocity", Hypothesis::Mechanism(Family::Start), 3.1),
         ("release-position", Hypothesis::Mechanism(Family::Start), 2.2),
@@ -121,10 +126,9 @@ fn mechanisms() -> Vec<Judged> {
         ("velocity-weakening", Hypothesis::Mechanism(Family::Physics), -0.8),
         ("heavy-tails", Hypothesis::Mechanism(Family::Errors), -0.9),
     ];
-    all.extend(rest.map(|(name, kind, bf)| {
+    rest.into_iter().map(|(name, kind, bf)| {
         judged(name, kind, 1e-9, bf, vec![parameter("amount", "1", 0.1, 0.1)])
-    }));
-    all
+    })
 }
 
 fn speed(t: f64) -> f64 {

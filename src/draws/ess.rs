@@ -10,9 +10,9 @@
 
 use statrs::distribution::{Beta, ContinuousCDF, Normal};
 
+use super::quantile::{quantile, sorted};
 use super::rhat::{rank_normalised, split};
 use super::spectrum::{Autocovariances, mean, variance};
-use super::summary::{quantile, sorted};
 
 /// How many independent draws would place the bulk of the distribution as
 /// well: the effective size of the rank-normalised draws.

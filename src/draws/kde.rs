@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
+use super::quantile::{quantile, sorted};
 use super::spectrum::variance;
-use super::summary::{quantile, sorted};
 
 /// How far the Gaussian kernel reaches, in bandwidths; what lies beyond is
 /// 2e-9 of its mass.

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::Draws;
 use super::ess::ess_below;
-use super::summary::{quantile, sorted};
+use super::quantile::{quantile, sorted};
 
 /// A two-sample test of Kolmogorov and Smirnov.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -33,6 +33,7 @@ mod kde;
 mod kolmogorov;
 mod lfo;
 mod loo;
+mod quantile;
 mod residual;
 mod rhat;
 mod spectrum;
@@ -48,13 +49,14 @@ pub use kolmogorov::{
 pub use lfo::{Lfo, leave_future_out};
 pub(crate) use loo::log_sum_exp;
 pub use loo::{Loo, k_threshold, loo, psis, sum_and_error};
+pub(crate) use quantile::median;
+pub use quantile::quantile;
 pub use residual::{
     LjungBox, ShapiroWilk, autocorrelation, ljung_box, normal_p, shapiro_wilk,
     uncorrelated_p,
 };
 pub use rhat::rhat;
-pub(crate) use summary::median;
-pub use summary::{Summary, quantile, summarise};
+pub use summary::{Summary, summarise};
 
 /// The chains of a sampler, all of one length and one dimension.
 ///

@@ -2,8 +2,8 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
+use super::quantile::sorted;
 use super::spectrum::autocovariance_sum;
-use super::summary::sorted;
 
 /// The autocorrelation of a series at lags 0 to `max_lag`, or to the last lag
 /// there is.

@@ -6,8 +6,8 @@
 
 use statrs::distribution::{ContinuousCDF, Normal};
 
+use super::quantile::{quantile, sorted};
 use super::spectrum::{mean, variance};
-use super::summary::{quantile, sorted};
 
 /// The rank-normalised split R-hat of one parameter, chain by chain.
 ///

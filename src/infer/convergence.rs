@@ -2,7 +2,7 @@
 //! Buerkner (2021): R-hat at most 1.01, and effective sizes of bulk and tail
 //! of 100 for each chain at the least.
 
-use super::Inference;
+use super::inference::Inference;
 use crate::draws::{Draws, Summary, summarise};
 use crate::error::Result;
 use crate::model::{Point, Posterior};

@@ -2,7 +2,7 @@
 
 use std::fmt::{Display, Formatter, Result};
 
-use super::{Inference, Marginal};
+use super::inference::{Inference, Marginal};
 use crate::draws::{Draws, Summary, summarise};
 
 impl Display for Inference {

@@ -133,7 +133,7 @@ mod tests {
         let mean = DVector::from_element(1, 0.25);
         let part = (1.0, mean, DMatrix::from_element(1, 1, 0.5));
         let mixture = Mixture::of([part].into_iter()).unwrap();
-        Frozen { mixture, log: 0.0, excess, good: true }
+        Frozen { mixture, log: 0.0, excess, good: true, round: 0 }
     }
 
     #[test]

@@ -13,6 +13,7 @@ mod convergence;
 mod display;
 mod estimate;
 mod groups;
+mod inference;
 pub(crate) mod nested;
 mod profile;
 mod proposal;
@@ -30,6 +31,7 @@ pub use climb::{Peak, climb};
 pub(crate) use convergence::convergence;
 pub(crate) use estimate::Precision;
 pub use groups::{Group, Grouped};
+pub use inference::{Evidence, Inference, LEVELS, Marginal, Mode};
 pub use proposal::Mixture;
 pub(crate) use proposal::student_constant;
 pub use search::{HeldGrid, HeldPlace, SearchSpace};
@@ -38,7 +40,7 @@ pub(crate) use weights::systematic;
 use std::fmt::Debug;
 use std::time::Instant;
 
-use crate::draws::{Draws, Summary, log_sum_exp};
+use crate::draws::{Draws, log_sum_exp};
 use crate::error::{Error, Result};
 use crate::model::{Cost, Posterior};
 use crate::seed::Seed;
@@ -72,46 +74,6 @@ pub trait Backend: Debug + Sync {
         seed: Seed,
         progress: &dyn Progress,
     ) -> Result<Inference>;
-}
-
-/// What an inference found; `{}` prints it as a short table.
-#[derive(Debug, Clone, Default)]
-#[non_exhaustive]
-pub struct Inference {
-    /// Draws from the posterior, of the parameters as named.
-    pub draws: Option<Draws>,
-    /// The figures of each parameter, where the draws are of chains: what
-    /// the warnings about those were read off.
-    pub summaries: Vec<Summary>,
-    /// The posterior mode.
-    pub mode: Option<Mode>,
-    /// Each parameter's posterior without Monte Carlo error, where the backend
-    /// integrates.
-    pub marginals: Vec<Marginal>,
-    /// The evidence.
-    pub evidence: Option<Evidence>,
-    /// What it cost.
-    pub cost: Cost,
-    /// What the user should know before trusting the result.
-    pub warnings: Vec<String>,
-}
-
-impl Inference {
-    /// An inference that found draws; the other fields can be set after.
-    pub fn of_draws(draws: Draws) -> Self {
-        Self { draws: Some(draws), ..Self::default() }
-    }
-}
-
-/// The evidence, p(data), with its Monte Carlo error.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Evidence {
-    /// Its natural logarithm.
-    pub log: f64,
-    /// The standard error of that.
-    pub se: f64,
-    /// How it was estimated.
-    pub method: String,
 }
 
 /// Runs a backend on a posterior and adds what it cost, and whether chains

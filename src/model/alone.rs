@@ -2,7 +2,8 @@
 
 use super::listener::Collector;
 use super::number::Number;
-use super::program::{Model, Point, Program};
+use super::program::Model;
+use super::program::{Point, Program};
 use super::run::{Entered, Run};
 use crate::error::{Outcome, Result};
 use crate::mechanism::Unknown;

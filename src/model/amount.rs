@@ -1,7 +1,8 @@
 //! The unknowns of mechanisms, as a run asks for them.
 
+use super::label::Label;
 use super::number::Number;
-use super::run::{Label, Run};
+use super::run::Run;
 use crate::block::List;
 use crate::error::Stop;
 use crate::mechanism::{Role, Unknown};

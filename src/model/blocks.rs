@@ -1,7 +1,8 @@
 //! Which blocks a model has, told by the model itself.
 
 use super::listener::Listener;
-use super::program::{Model, Point};
+use super::program::Model;
+use super::program::Point;
 use crate::error::Result;
 use crate::scalar::Plain;
 

@@ -1,6 +1,6 @@
 //! Who listens to a run: names, pointwise likelihood, replicates.
 
-use super::run::Label;
+use super::label::Label;
 use crate::error::{Outcome, Stop};
 use crate::noise::{Noise, Stationary};
 use crate::observe::Series;

@@ -4,6 +4,7 @@
 //! where values come from (a point on the real line, a point as named, draws
 //! from the prior) and who listens.
 
+use super::label::Label;
 use super::listener::{Declaration, Listener};
 use crate::block::{List, Named};
 use crate::context::Context;
@@ -15,71 +16,6 @@ use crate::observe::{Prediction, Series};
 use crate::prior::{Prior, Support};
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
-
-/// The name and unit of a parameter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Label<'a> {
-    name: &'a str,
-    unit: &'a str,
-    indices: [Option<usize>; 2],
-    /// The label of the event that it is a parameter of; empty for none.
-    event: &'a str,
-}
-
-impl<'a> Label<'a> {
-    /// A parameter of this name; unit "1" for a pure number.
-    pub const fn new(name: &'a str, unit: &'a str) -> Self {
-        Self { name, unit, indices: [None; 2], event: "" }
-    }
-
-    /// The `index`-th of several (from 0); its name counts from 1. A second
-    /// index is that of a list within one of several blocks.
-    ///
-    /// ```
-    /// use couloir::Label;
-    /// let phi = Label::new("phi", "1");
-    /// assert_eq!(phi.at(2).name(), "phi[3]");
-    /// assert_eq!(phi.at(2).at(0).name(), "phi[3,1]");
-    /// ```
-    #[must_use]
-    pub const fn at(self, index: usize) -> Self {
-        let indices = match self.indices {
-            [None, _] => [Some(index), None],
-            [outer, _] => [outer, Some(index)],
-        };
-        Self { indices, ..self }
-    }
-
-    /// The same within an event of this label, where there is one.
-    const fn of_event(self, event: &'a str) -> Self {
-        Self { event, ..self }
-    }
-
-    /// Its name, with its indices in brackets where it has any, and the label
-    /// of its event before it.
-    pub fn name(&self) -> String {
-        let name = self.own_name();
-        match self.event {
-            "" => name,
-            event => format!("{event}.{name}"),
-        }
-    }
-
-    fn own_name(&self) -> String {
-        match self.indices {
-            [Some(i), Some(j)] => {
-                format!("{}[{},{}]", self.name, i + 1, j + 1)
-            }
-            [Some(i), None] => format!("{}[{}]", self.name, i + 1),
-            _ => self.name.to_owned(),
-        }
-    }
-
-    /// Its unit.
-    pub fn unit(&self) -> &'a str {
-        self.unit
-    }
-}
 
 /// Where a run takes its parameters' values from.
 #[derive(Debug)]

@@ -151,7 +151,7 @@ impl<K: Kind> Ar<Real<K>> {
             return First::new(phi, self.sigma2).filter(at, residuals, visit);
         }
         let errors = at.standard_errors();
-        let mut filter = Filter::new(self);
+        let mut filter = Filter::new(&self.phi, self.sigma2, self.variance());
         for (i, &r) in residuals.iter().enumerate() {
             filter.advance(steps(at, i));
             let (law, error) = filter.measure(r, errors.map_or(0.0, |s| s[i]));
@@ -280,7 +280,8 @@ impl<K: Kind> Noise<K> for Ar<Real<K>> {
         let mut values = if let [phi] = *self.phi {
             First::new(phi, self.sigma2).draw(at, rng)
         } else {
-            let mut filter = Filter::new(self);
+            let mut filter =
+                Filter::new(&self.phi, self.sigma2, self.variance());
             let next = |i| {
                 filter.advance(steps(at, i));
                 filter.settle(rng)

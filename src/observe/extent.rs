@@ -1,7 +1,7 @@
 //! How large an event is, from its first recording.
 
 use super::event::Event;
-use super::series::Quantity;
+use super::series::{Quantity, path_length};
 use crate::mechanism::Extent;
 
 impl Event {
@@ -137,14 +137,4 @@ fn sums(speed: f64, times: &[f64], accelerations: &[f64]) -> Vec<f64> {
             speed
         })
         .collect()
-}
-
-/// The distance covered at given speeds, by the trapezoidal rule.
-pub(super) fn path_length(speed: f64, times: &[f64], speeds: &[f64]) -> f64 {
-    let (mut time, mut before, mut distance) = (0.0, speed, 0.0);
-    for (&t, &v) in times.iter().zip(speeds) {
-        distance += 0.5 * (v + before) * (t - time);
-        (time, before) = (t, v);
-    }
-    distance
 }

@@ -5,7 +5,7 @@ use super::series::{Quantity, Series};
 use crate::context::Buffer;
 use crate::declared::Declared;
 use crate::error::{Error, Stop};
-use crate::physics::{Friction, Rest, State};
+use crate::physics::{Friction, Rest, State, sample};
 use crate::scalar::{Kind, Real};
 
 /// The motion of one event under one friction law.
@@ -16,6 +16,55 @@ pub struct Flow<'a, K: Kind, L> {
     speed: Buffer<'a, K>,
     distance: Buffer<'a, K>,
     acceleration: Buffer<'a, K>,
+}
+
+impl Event {
+    /// Solves the motion under a declared friction law.
+    ///
+    /// Only what a model declared can slide, so that no law escapes a change
+    /// to the model. This does not compile:
+    ///
+    /// ```compile_fail,E0308
+    /// use couloir::prelude::*;
+    /// fn undeclared<K: Kind>(event: &Event, mu: Real<K>) -> Outcome {
+    ///     let law = Coulomb { mu };
+    ///     event.slide(&law)?; // expected `&Declared<..>`
+    ///     Ok(())
+    /// }
+    /// ```
+    ///
+    /// With `let law = run.declare(Coulomb { mu })` it does.
+    ///
+    /// # Errors
+    /// [`Stop::Reject`] where the law has no flow with these values.
+    #[inline]
+    pub fn slide<'a, K: Kind, L: Friction<K>>(
+        &'a self,
+        friction: &'a Declared<'_, K, L>,
+    ) -> Result<Flow<'a, K, L>, Stop> {
+        let context = friction.context();
+        context.count_slide();
+        let mut flow = Flow::new(self, friction);
+        let speed_only = self.velocity.window() == 0.0
+            && self.position.is_empty()
+            && self.acceleration.is_empty();
+        if let Some(change) = friction.change()
+            && change.moves()
+        {
+            let visit = |state| flow.push(state, speed_only);
+            self.slide_changed(friction, change, speed_only, visit)?;
+            return Ok(flow);
+        }
+        sample(
+            &self.path(),
+            friction.block(),
+            self.release(),
+            self.samples(),
+            speed_only,
+            |state| flow.push(state, speed_only),
+        )?;
+        Ok(flow)
+    }
 }
 
 impl<'a, K: Kind, L: Friction<K>> Flow<'a, K, L> {

@@ -7,6 +7,7 @@
 mod event;
 mod extent;
 mod flow;
+mod motion;
 mod scatter;
 mod series;
 

@@ -70,7 +70,7 @@ mod tests {
     use super::*;
     use crate::draws::median;
     use crate::observe::Event;
-    use crate::observe::extent::path_length;
+    use crate::observe::series::path_length;
     use crate::physics::Track;
     use crate::seed::Seed;
 

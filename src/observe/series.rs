@@ -284,3 +284,13 @@ fn check(quantity: Quantity, times: &[f64], values: &[f64]) -> Result<()> {
         None => Ok(()),
     }
 }
+
+/// The distance covered at given speeds, by the trapezoidal rule.
+pub(super) fn path_length(speed: f64, times: &[f64], speeds: &[f64]) -> f64 {
+    let (mut time, mut before, mut distance) = (0.0, speed, 0.0);
+    for (&t, &v) in times.iter().zip(speeds) {
+        distance += 0.5 * (v + before) * (t - time);
+        (time, before) = (t, v);
+    }
+    distance
+}

@@ -10,10 +10,12 @@ use super::ahead::Ahead;
 use super::exact::{End, Force, Pace};
 use super::forces::{Axis, Forces, Moment, NEAR};
 use super::friction::{Friction, Rate, Varies};
+use super::motion::{
+    Path, Release, Rest, State, Walker, first_piece, follow, site,
+};
 use super::resistance::{Even, Resistance, Tilt};
 use super::skim::{Crossing, Entry, skim, skim_even};
 use super::track::Piece;
-use super::walk::{Path, Release, Rest, State, Walker, first_piece, site};
 use crate::error::Stop;
 use crate::scalar::{Kind, Real};
 
@@ -533,4 +535,18 @@ pub fn sample_changed<K: Kind, L: Friction<K>>(
         });
     }
     Ok(())
+}
+
+/// Follows the motion under law and forces until the mass rests; `None` if it
+/// never does.
+///
+/// # Errors
+/// [`Stop::Reject`] where the law has no flow with these values.
+pub fn rest_changed<K: Kind, L: Friction<K>>(
+    path: &Path<'_>,
+    law: &L,
+    forces: &Forces<K>,
+    release: Release<K>,
+) -> Result<Option<Rest<K>>, Stop> {
+    follow(ChangedWalker::new(path, law, forces, release)?)
 }

@@ -320,18 +320,12 @@ impl<K: Kind> Force<K> {
         };
         let u = Real::new(u.value());
         let place = |t: f64| plain.distance_after(u, t.into()).value();
-        let (mut low, mut high) = (0.0, within);
-        let mut t = plain.guess_time(u, length).min(0.5 * within);
-        if high == f64::INFINITY {
-            while place(t) < length {
-                low = t;
-                t *= 2.0;
-                if t > 1e9 {
-                    return None;
-                }
-            }
-            high = t;
-        }
+        let guess = plain.guess_time(u, length).min(0.5 * within);
+        let (mut low, mut high) = match within {
+            f64::INFINITY => beyond(guess, |t| place(t) < length)?,
+            within => (0.0, within),
+        };
+        let mut t = if within.is_finite() { guess } else { high };
         for _ in 0..100 {
             let miss = place(t) - length;
             // Beyond a speed without bound the place is not a number.
@@ -354,6 +348,20 @@ impl<K: Kind> Force<K> {
         }
         Some(t)
     }
+}
+
+/// A time that is not before what is looked for, by doubling a first one, and
+/// the last one before it; `None` where there is none.
+fn beyond(first: f64, is_before: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
+    let (mut low, mut high) = (0.0, first);
+    while is_before(high) {
+        low = high;
+        high *= 2.0;
+        if high > 1e9 {
+            return None;
+        }
+    }
+    Some((low, high))
 }
 
 /// ln(cosh(x) + k sinh(x)) for large x.

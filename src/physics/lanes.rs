@@ -19,10 +19,10 @@
 use super::eight::{EIGHT, Eight, atanhc, expc, tanhc};
 use super::exact::{FAR, Pace};
 use super::friction::{Friction, Rate, Varies};
+use super::motion::{Path, Release, State, first_piece, site};
+use super::sample::sample;
 use super::track::Piece;
-use super::walk::{
-    Path, Release, Standing, State, first_piece, sample, sample_from, site,
-};
+use super::walk::{Standing, sample_from};
 use crate::error::Stop;
 use crate::scalar::{Plain, Real};
 

@@ -10,23 +10,27 @@ pub mod friction;
 pub mod track;
 
 mod ahead;
+mod by_speed;
 mod changed;
 mod eight;
 mod elementary;
 mod exact;
+mod fitted;
 mod lanes;
-mod numeric;
+mod motion;
 mod resistance;
+mod sample;
 mod skim;
 mod slopes;
 mod walk;
 
-pub use changed::sample_changed;
+pub use changed::{rest_changed, sample_changed};
 pub use forces::Forces;
 pub use friction::{Friction, Rate, Site, Sum, Varies};
 pub use lanes::speeds;
+pub use motion::{Path, Release, Rest, State};
+pub use sample::{rest, sample};
 pub use track::Track;
-pub use walk::{Path, Release, Rest, State, rest, rest_changed, sample};
 
 /// The acceleration of gravity \[m/s2\].
 pub const GRAVITY: f64 = 9.81;

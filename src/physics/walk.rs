@@ -1,121 +1,16 @@
-//! Sliding along the track, leg by leg.
-//!
-//! A [`Walker`] stands on one leg of the motion at a time, knows when it ends
-//! and the state at any time on it. The exact walker here serves every law of
-//! the exact family, the one in `numeric` the rest; sampling a flow at given
-//! times and following it to rest are written once, over both.
+//! The motion under a law of the exact family, leg by leg.
 
 use super::ahead::Ahead;
-use super::changed::ChangedWalker;
 use super::exact::{End, Force, Pace};
-use super::forces::Forces;
-use super::friction::{Friction, Rate, Site, Varies};
-use super::numeric::{FEW, NumericWalker, PLAIN, WITH_FEW, WITH_MANY};
+use super::friction::{Friction, Rate, Varies};
+use super::motion::{
+    Path, Release, Rest, State, Walker, first_piece, site, visit_times,
+};
 use super::resistance::Even;
 use super::skim::{Crossing, Entry, skim_even};
 use super::track::{Piece, Track};
 use crate::error::Stop;
 use crate::scalar::{Kind, Real};
-
-/// How the mass starts.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Release<K: Kind> {
-    /// Distance along the slope \[m\].
-    pub distance: Real<K>,
-    /// Speed at t = 0 \[m/s\].
-    pub speed: Real<K>,
-}
-
-/// The state of the mass at one time.
-#[derive(Debug, Clone, Copy)]
-pub struct State<K: Kind> {
-    /// Speed \[m/s\].
-    pub speed: Real<K>,
-    /// Distance along the slope from the track's first point \[m\].
-    pub distance: Real<K>,
-    /// du/dt \[m/s2\].
-    pub acceleration: Real<K>,
-}
-
-/// Where and when the mass comes to rest.
-#[derive(Debug, Clone, Copy)]
-pub struct Rest<K: Kind> {
-    /// Time \[s\].
-    pub time: Real<K>,
-    /// Distance along the slope from the track's first point \[m\].
-    pub distance: Real<K>,
-}
-
-/// One leg of the motion after the other.
-pub(crate) trait Walker<K: Kind> {
-    /// The time at which the current leg ends \[s\]; infinite at rest.
-    fn ends(&self) -> f64;
-    /// Goes on to the next leg.
-    fn advance(&mut self) -> Result<(), Stop>;
-    /// Goes on by one leg or by many, but not beyond the one that holds
-    /// `time` \[s\].
-    #[inline(always)]
-    fn leap(&mut self, _time: f64) -> Result<(), Stop> {
-        self.advance()
-    }
-    /// Goes on to the leg that holds `time`.
-    #[inline(always)]
-    fn advance_to(&mut self, time: f64) -> Result<(), Stop> {
-        while self.ends() <= time {
-            self.leap(time)?;
-        }
-        Ok(())
-    }
-    /// The speed at a time on the current leg.
-    fn speed_at(&mut self, time: f64) -> Result<Real<K>, Stop>;
-    /// The whole state there.
-    fn state_at(&mut self, time: f64) -> Result<State<K>, Stop>;
-    /// Where and when the mass came to rest, once it has.
-    fn at_rest(&self) -> Option<Rest<K>>;
-    /// Whether the mass moves on for ever.
-    fn is_endless(&self) -> bool {
-        self.ends() == f64::INFINITY
-    }
-}
-
-/// Legs before a flow is given up as endless: far above any real track, it
-/// only keeps a pathological law from running for ever.
-const MAX_LEGS: usize = 10_000_000;
-
-/// Solves the motion and hands the state at each of the increasing `times`
-/// \[s\] to `visit`. With `speed_only`, distance and acceleration are left at
-/// 0 and cost nothing.
-///
-/// # Errors
-/// [`Stop::Reject`] where the law has no flow with these values.
-#[inline]
-pub fn sample<K: Kind, L: Friction<K>>(
-    path: &Path<'_>,
-    law: &L,
-    release: Release<K>,
-    times: &[f64],
-    speed_only: bool,
-    visit: impl FnMut(State<K>),
-) -> Result<(), Stop> {
-    match law.varies() {
-        Varies::WithSpeed if K::DIRECTIONS == 0 => {
-            let walker = NumericWalker::<K, L, PLAIN>::new;
-            visit_times(walker(path, law, release)?, times, speed_only, visit)
-        }
-        Varies::WithSpeed if K::DIRECTIONS <= FEW => {
-            let walker = NumericWalker::<K, L, WITH_FEW>::new;
-            visit_times(walker(path, law, release)?, times, speed_only, visit)
-        }
-        Varies::WithSpeed => {
-            let walker = NumericWalker::<K, L, WITH_MANY>::new;
-            visit_times(walker(path, law, release)?, times, speed_only, visit)
-        }
-        _ => {
-            let walker = ExactWalker::new(path, law, release)?;
-            visit_times(walker, times, speed_only, visit)
-        }
-    }
-}
 
 /// A place on the track that the mass has reached, and when.
 #[derive(Debug, Clone, Copy)]
@@ -129,7 +24,7 @@ pub(super) struct Standing<K: Kind> {
 }
 
 /// Goes on with a motion from where it stands, under a law of the exact
-/// family, as [`sample`] with speeds only.
+/// family, as `sample` with speeds only.
 ///
 /// # Errors
 /// [`Stop::Reject`] where the law has no flow with these values.
@@ -144,118 +39,8 @@ pub(super) fn sample_from<K: Kind, L: Friction<K>>(
     visit_times(walker, times, true, visit)
 }
 
-/// Follows the motion until the mass rests; `None` if it never does.
-///
-/// # Errors
-/// [`Stop::Reject`] where the law has no flow with these values.
-pub fn rest<K: Kind, L: Friction<K>>(
-    path: &Path<'_>,
-    law: &L,
-    release: Release<K>,
-) -> Result<Option<Rest<K>>, Stop> {
-    match law.varies() {
-        Varies::WithSpeed if K::DIRECTIONS == 0 => {
-            follow(NumericWalker::<K, L, PLAIN>::new(path, law, release)?)
-        }
-        Varies::WithSpeed if K::DIRECTIONS <= FEW => {
-            follow(NumericWalker::<K, L, WITH_FEW>::new(path, law, release)?)
-        }
-        Varies::WithSpeed => {
-            follow(NumericWalker::<K, L, WITH_MANY>::new(path, law, release)?)
-        }
-        _ => follow(ExactWalker::new(path, law, release)?),
-    }
-}
-
-/// The same with forces added to the law.
-///
-/// # Errors
-/// [`Stop::Reject`] where the law has no flow with these values.
-pub fn rest_changed<K: Kind, L: Friction<K>>(
-    path: &Path<'_>,
-    law: &L,
-    forces: &Forces<K>,
-    release: Release<K>,
-) -> Result<Option<Rest<K>>, Stop> {
-    follow(ChangedWalker::new(path, law, forces, release)?)
-}
-
-/// The ground a flow runs on: the track and the flow depth \[m\].
-#[derive(Debug, Clone, Copy)]
-pub struct Path<'a> {
-    /// The terrain.
-    pub track: &'a Track,
-    /// The mean flow depth \[m\].
-    pub depth: f64,
-}
-
-#[inline(always)]
-fn visit_times<K: Kind>(
-    mut walker: impl Walker<K>,
-    times: &[f64],
-    speed_only: bool,
-    mut visit: impl FnMut(State<K>),
-) -> Result<(), Stop> {
-    for &time in times {
-        walker.advance_to(time)?;
-        visit(if speed_only {
-            let speed = walker.speed_at(time)?;
-            let zero = Real::new(0.0);
-            State { speed, distance: zero, acceleration: zero }
-        } else {
-            walker.state_at(time)?
-        });
-    }
-    Ok(())
-}
-
-fn follow<K: Kind>(
-    mut walker: impl Walker<K>,
-) -> Result<Option<Rest<K>>, Stop> {
-    for _ in 0..MAX_LEGS {
-        if let Some(rest) = walker.at_rest() {
-            return Ok(Some(rest));
-        }
-        if walker.is_endless() {
-            return Ok(None);
-        }
-        walker.leap(f64::INFINITY)?;
-    }
-    Ok(None)
-}
-
-/// The site of a piece, as laws see it.
-pub(crate) fn site(piece: &Piece, depth: f64) -> Site {
-    let half = if piece.length.is_finite() { 0.5 * piece.length } else { 0.0 };
-    Site {
-        distance: piece.start + half,
-        pull: piece.pull,
-        load: piece.load,
-        curvature: piece.curvature,
-        depth,
-    }
-}
-
-/// The piece at the start and how far into it the mass stands.
-pub(crate) fn first_piece<K: Kind>(
-    path: &Path<'_>,
-    release: &Release<K>,
-) -> Result<(usize, Real<K>), Stop> {
-    if !release.distance.value().is_finite()
-        || !release.speed.value().is_finite()
-        || release.distance < 0.0
-        || release.speed < 0.0
-    {
-        return Err(Stop::Reject(
-            "the mass starts off the track or backwards",
-        ));
-    }
-    let index = path.track.piece_at(release.distance.value());
-    Ok((index, release.distance - path.track.pieces()[index].start))
-}
-
 /// The walker of the exact family.
-struct ExactWalker<'a, K: Kind, L> {
+pub(super) struct ExactWalker<'a, K: Kind, L> {
     track: &'a Track,
     pieces: &'a [Piece],
     depth: f64,
@@ -285,7 +70,7 @@ struct ExactWalker<'a, K: Kind, L> {
 
 impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
     #[inline]
-    fn new(
+    pub(super) fn new(
         path: &Path<'a>,
         law: &'a L,
         release: Release<K>,

@@ -1,7 +1,9 @@
 //! The layers: each module uses lower ones only. ARCHITECTURE.md says which
-//! is which; this reads the table there and the code in `src/`.
+//! is which; this reads the table there and the code in `src/`. Beside them,
+//! what holds for files and functions.
 
 mod circles;
+mod functions;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

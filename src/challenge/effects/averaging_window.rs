@@ -2,7 +2,7 @@
 //! instant. Before the release the mass was at rest, and the mean says so.
 
 use super::{Class, Effect, Kind, Scene, Void};
-use crate::challenge::motion::Run;
+use crate::challenge::moments::Run;
 use crate::seed::Rng;
 
 pub(super) const KIND: Kind = Kind {

@@ -1,7 +1,7 @@
 //! A resistance that depends on nothing.
 
 use super::{Class, Effect, Kind, Scene, Void};
-use crate::challenge::motion::Moment;
+use crate::challenge::moments::Moment;
 use crate::seed::Rng;
 
 pub(super) const KIND: Kind = Kind {

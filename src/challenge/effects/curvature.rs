@@ -1,7 +1,7 @@
 //! Normal load by the centripetal force: g cos(theta) + c kappa u2.
 
 use super::{Class, Effect, Kind, Scene, Void};
-use crate::challenge::motion::Moment;
+use crate::challenge::moments::Moment;
 use crate::seed::Rng;
 
 /// Sized by c, near 1: how much of the bend the mass follows.

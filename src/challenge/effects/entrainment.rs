@@ -2,7 +2,7 @@
 //! brakes by e u2.
 
 use super::{Class, Effect, Kind, Scene, Stretch, Void, inside};
-use crate::challenge::motion::Moment;
+use crate::challenge::moments::Moment;
 use crate::seed::Rng;
 
 /// Sized by the force at the upper quartile of the speeds.

@@ -4,7 +4,7 @@
 use rand::RngExt;
 
 use super::{Class, Effect, Kind, Scene, Void};
-use crate::challenge::motion::Moment;
+use crate::challenge::moments::Moment;
 use crate::seed::Rng;
 
 /// Sized by the change of mu from the start to the end of the recording.

@@ -1,7 +1,7 @@
 //! Friction that differs between two places.
 
 use super::{Class, Effect, Kind, Scene, Stretch, Void, inside};
-use crate::challenge::motion::Moment;
+use crate::challenge::moments::Moment;
 use crate::seed::Rng;
 
 pub(super) const KIND: Kind = Kind {

@@ -1,7 +1,7 @@
 //! The mass moved already at t = 0, though its file says it was at rest.
 
 use super::{Class, Effect, Kind, Scene, Void};
-use crate::challenge::motion::Start;
+use crate::challenge::moments::Start;
 use crate::seed::Rng;
 
 pub(super) const KIND: Kind = Kind {

@@ -3,7 +3,7 @@
 use rand::RngExt;
 
 use super::{Class, Effect, Kind, Scene, Stretch, Void};
-use crate::challenge::motion::Moment;
+use crate::challenge::moments::Moment;
 use crate::seed::Rng;
 
 /// Sized by the change of mu at the end of the recording.

@@ -37,7 +37,7 @@ use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::ground::Ground;
-use super::motion::{Moment, Run, Start};
+use super::moments::{Moment, Run, Start};
 use crate::seed::Rng;
 
 pub(super) use none::Nothing;

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use rand::RngExt;
 
 use super::{Class, Effect, Kind, Scene, Void};
-use crate::challenge::motion::Moment;
+use crate::challenge::moments::Moment;
 use crate::seed::Rng;
 
 /// Sized by the amplitude.

@@ -1,7 +1,7 @@
 //! The mass started above or below the place that its file gives.
 
 use super::{Class, Effect, Kind, Scene, Void};
-use crate::challenge::motion::Start;
+use crate::challenge::moments::Start;
 use crate::seed::Rng;
 
 /// Sized by the distance along the slope, positive downhill.

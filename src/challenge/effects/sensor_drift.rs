@@ -1,7 +1,7 @@
 //! A sensor whose zero drifts steadily.
 
 use super::{Class, Effect, Kind, Scene, Void};
-use crate::challenge::motion::Run;
+use crate::challenge::moments::Run;
 use crate::seed::Rng;
 
 /// Sized by the drift over the recording.

@@ -1,7 +1,7 @@
 //! A force in a window of time, as by mass that comes from behind.
 
 use super::{Class, Effect, Kind, Scene, Stretch, Void, inside};
-use crate::challenge::motion::Moment;
+use crate::challenge::moments::Moment;
 use crate::seed::Rng;
 
 /// Sized by the specific force, positive along the motion.

@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::challenge::ground::Shape;
-use crate::challenge::motion::{Law, Moment, STEP, slide};
+use crate::challenge::moments::Moment;
+use crate::challenge::motion::{Law, STEP, slide};
 use crate::seed::Seed;
 
 const LAW: Law = Law::Coulomb { mu: 0.35 };

@@ -1,7 +1,7 @@
 //! Speeds that are all too large or too small by the same factor.
 
 use super::{Class, Effect, Kind, Scene, Void};
-use crate::challenge::motion::Run;
+use crate::challenge::moments::Run;
 use crate::seed::Rng;
 
 /// Sized by the factor less 1.

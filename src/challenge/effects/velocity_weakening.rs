@@ -3,7 +3,7 @@
 use rand::RngExt;
 
 use super::{Class, Effect, Kind, Scene, Void};
-use crate::challenge::motion::Moment;
+use crate::challenge::moments::Moment;
 use crate::seed::Rng;
 
 /// Sized by 1 - r, the share of mu that fast motion loses.

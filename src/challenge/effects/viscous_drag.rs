@@ -1,7 +1,7 @@
 //! A drag that grows with the speed.
 
 use super::{Class, Effect, Kind, Scene, Void};
-use crate::challenge::motion::Moment;
+use crate::challenge::moments::Moment;
 use crate::seed::Rng;
 
 /// Sized by the force at the upper quartile of the speeds.

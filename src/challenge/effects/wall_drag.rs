@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use super::{Class, Effect, Kind, Scene, Stretch, Void, inside};
-use crate::challenge::motion::Moment;
+use crate::challenge::moments::Moment;
 use crate::seed::Rng;
 
 /// Sized by the force in the narrowest place at the upper quartile of the

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use crate::error::{Error, Result};
 use crate::infer::simplex::{WALL, descend};
 use crate::infer::start::apart;
-use crate::infer::{Backend, Inference, Progress};
+use crate::infer::{Backend, Inference, Mode, Progress};
 use crate::model::{Point, Posterior, Weights};
 use crate::seed::Seed;
 
@@ -33,23 +33,6 @@ impl Default for Map {
     fn default() -> Self {
         Self { starts: 8, from: Vec::new() }
     }
-}
-
-/// The posterior mode.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Mode {
-    /// The parameters as named.
-    pub natural: Vec<f64>,
-    /// Their places on the real line.
-    pub line: Vec<f64>,
-    /// ln(prior x likelihood) there, in the parameters as named.
-    pub log_density: f64,
-    /// The inverse of the negative Hessian on the real line, from exact
-    /// gradients: the covariance of a normal approximation. `None` where the
-    /// Hessian is not negative definite, as it may be at a kink.
-    pub covariance: Option<DMatrix<f64>>,
-    /// The log density that each start led to, best first.
-    pub reached: Vec<f64>,
 }
 
 /// The problem as argmin sees it: minus the log density at centre + factor y.

@@ -16,10 +16,10 @@ pub(super) mod smc;
 pub use bridge::Bridge;
 pub use importance::ImportanceSampling;
 pub use laplace_mixture::LaplaceMixture;
-pub use map::{Map, Mode};
+pub use map::Map;
 pub use mh::{MetropolisHastings, Proposal};
 #[cfg(feature = "nuts")]
 pub use nuts::Nuts;
-pub use quadrature::{LEVELS, Marginal, Quadrature};
+pub use quadrature::Quadrature;
 pub use reciprocal::ReciprocalImportance;
 pub use smc::Smc;

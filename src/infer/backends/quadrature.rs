@@ -14,7 +14,8 @@ use super::smc::Smc;
 use crate::draws::{Draws, quantile};
 use crate::error::{Error, Result};
 use crate::infer::{
-    Backend, Evidence, Inference, Progress, draws_of, log_sum_exp,
+    Backend, Evidence, Inference, LEVELS, Marginal, Progress, draws_of,
+    log_sum_exp,
 };
 use crate::model::{Point, Posterior};
 use crate::seed::Seed;
@@ -32,31 +33,6 @@ impl Default for Quadrature {
     fn default() -> Self {
         let pilot = Smc { particles: 500, refine: false, ..Smc::default() };
         Self { nodes: None, pilot }
-    }
-}
-
-/// The levels of a [`Marginal`]'s quantiles.
-pub const LEVELS: [f64; 7] = [0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975];
-
-/// One parameter's posterior, integrated over the others.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Marginal {
-    /// The parameter's name.
-    pub name: String,
-    /// Its unit.
-    pub unit: String,
-    /// Its mean.
-    pub mean: f64,
-    /// Its standard deviation.
-    pub sd: f64,
-    /// Its quantiles at [`LEVELS`].
-    pub quantiles: [f64; 7],
-}
-
-impl Marginal {
-    /// Whether the 90 % interval holds a value.
-    pub fn covers(&self, value: f64) -> bool {
-        (self.quantiles[1]..=self.quantiles[5]).contains(&value)
     }
 }
 

@@ -10,7 +10,6 @@ use std::ops::Range;
 
 use rand_distr::{Distribution, StandardNormal};
 
-use super::Ar;
 use super::levinson::Predictor;
 use crate::block::List;
 use crate::noise::gaussian::Gaussian;
@@ -31,12 +30,16 @@ pub(super) struct Filter<K: Kind> {
 }
 
 impl<K: Kind> Filter<K> {
-    /// The stationary process, nothing measured.
-    pub(super) fn new(ar: &Ar<Real<K>>) -> Self {
-        let k = ar.phi.len();
-        let mut predictor = Predictor::new(ar.variance());
+    /// The stationary process of a variance, nothing measured.
+    pub(super) fn new(
+        phi: &[Real<K>],
+        sigma2: Real<K>,
+        variance: Real<K>,
+    ) -> Self {
+        let k = phi.len();
+        let mut predictor = Predictor::new(variance);
         let mut factor = vec![Real::new(0.0); k * k];
-        for (j, &partial) in ar.phi.iter().enumerate() {
+        for (j, &partial) in phi.iter().enumerate() {
             // Value j, at row k - 1 - j, on each of the j deviates before its
             // own: the rows below it are the values it is predicted from.
             let row = k - 1 - j;
@@ -48,7 +51,7 @@ impl<K: Kind> Filter<K> {
         }
         Self {
             coefficients: predictor.coefficients,
-            sd: ar.sigma2.sqrt(),
+            sd: sigma2.sqrt(),
             mean: List::from_elem(Real::new(0.0), k),
             factor,
         }

@@ -1,6 +1,6 @@
 //! Mechanisms as bars of probability, with their Bayes factors.
 
-use super::Figure;
+use super::figure::Figure;
 use crate::diagnosis::tell::phrases::{log10, probability};
 use crate::diagnosis::{Diagnosis, Hypothesis, Judged};
 use crate::mechanism::Family;

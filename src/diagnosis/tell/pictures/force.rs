@@ -3,7 +3,8 @@
 
 use std::f64::consts::LN_10;
 
-use super::{Figure, along, shade};
+use super::along::along;
+use super::figure::{Figure, shade};
 use crate::diagnosis::tell::phrases::log10;
 use crate::diagnosis::{Diagnosis, FreeForce};
 use crate::physics::forces::Axis;

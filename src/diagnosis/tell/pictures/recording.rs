@@ -1,7 +1,8 @@
 //! A recording with what the model predicts, before and after, over time and
 //! over distance.
 
-use super::{Figure, along_in, interpolate, roomy, shade};
+use super::along::{along_in, interpolate};
+use super::figure::{Figure, roomy, shade};
 use crate::diagnosis::{Diagnosis, Pictured};
 use crate::physics::forces::Axis;
 use crate::predict::Bands;

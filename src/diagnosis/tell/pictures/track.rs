@@ -1,6 +1,6 @@
 //! The track with the located stretch on it.
 
-use super::Figure;
+use super::figure::Figure;
 use crate::diagnosis::tell::phrases::range;
 use crate::diagnosis::{Diagnosis, Pictured};
 use crate::report::digits::short;

@@ -5,6 +5,7 @@ use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use super::*;
+use crate::challenge::case::Recording;
 use crate::challenge::scenery::VALUES;
 use crate::io::{EventFile, parse_event};
 use crate::physics::friction::Laws;

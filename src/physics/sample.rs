@@ -1,0 +1,48 @@
+//! The motion under a law, asked for: its states at given times, its end.
+
+use super::by_speed::SpeedWalker;
+use super::friction::{Friction, Varies};
+use super::motion::{Path, Release, Rest, State, follow, visit_times};
+use super::walk::ExactWalker;
+use crate::error::Stop;
+use crate::scalar::Kind;
+
+/// Solves the motion and hands the state at each of the increasing `times`
+/// \[s\] to `visit`. With `speed_only`, distance and acceleration are left at
+/// 0 and cost nothing.
+///
+/// # Errors
+/// [`Stop::Reject`] where the law has no flow with these values.
+#[inline]
+pub fn sample<K: Kind, L: Friction<K>>(
+    path: &Path<'_>,
+    law: &L,
+    release: Release<K>,
+    times: &[f64],
+    speed_only: bool,
+    visit: impl FnMut(State<K>),
+) -> Result<(), Stop> {
+    if law.varies() == Varies::WithSpeed {
+        let walker = SpeedWalker::new(path, law, release)?;
+        visit_times(walker, times, speed_only, visit)
+    } else {
+        let walker = ExactWalker::new(path, law, release)?;
+        visit_times(walker, times, speed_only, visit)
+    }
+}
+
+/// Follows the motion until the mass rests; `None` if it never does.
+///
+/// # Errors
+/// [`Stop::Reject`] where the law has no flow with these values.
+pub fn rest<K: Kind, L: Friction<K>>(
+    path: &Path<'_>,
+    law: &L,
+    release: Release<K>,
+) -> Result<Option<Rest<K>>, Stop> {
+    if law.varies() == Varies::WithSpeed {
+        follow(SpeedWalker::new(path, law, release)?)
+    } else {
+        follow(ExactWalker::new(path, law, release)?)
+    }
+}
