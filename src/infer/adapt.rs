@@ -92,7 +92,13 @@ impl Frozen {
         self.good =
             schedule.is_good(quality) && !moved.met_more(quality.0, schedule);
         if !self.good {
-            self.mixture = widened(mixture, &moved, seed.child(1));
+            let wider = widened(mixture, &moved, seed.child(1));
+            self.mixture = mended(&wider, found).unwrap_or(wider);
+        } else if self.round < schedule.mended_until
+            && let Some(mended) = mended(mixture, found)
+        {
+            self.mixture = mended;
+            self.good = false;
         }
         Ok(self)
     }
@@ -102,6 +108,29 @@ impl Frozen {
 pub(super) fn reweighted(mixture: &Mixture, found: &[Particle]) -> Mixture {
     let places = found.iter().map(|particle| &particle.z[..]);
     mixture.reweighted(places.zip(cut(found)))
+}
+
+/// A mixture with components where weighted draws say that it is far too low:
+/// in a neck that draws hardly enter when they are moved. `None` where it is
+/// nowhere so low.
+fn mended(mixture: &Mixture, found: &[Particle]) -> Option<Mixture> {
+    let log = log_mean_weight(found);
+    let rows: Vec<Vec<f64>> = found.iter().map(|p| p.z.clone()).collect();
+    let targets: Vec<f64> =
+        found.iter().map(|p| p.log_target() - log).collect();
+    mixture.mended(&rows, &cut(found), &targets)
+}
+
+/// A mixture beside one that is fitted to draws that were moved on.
+fn widened(mixture: &Mixture, moved: &Moved, seed: Seed) -> Mixture {
+    let rows = &moved.places;
+    let even = vec![1.0 / rows.len() as f64; rows.len()];
+    let mut both = beside(mixture, rows, &even, seed);
+    for _ in 0..REWEIGHTED {
+        let places = rows.iter().map(Vec::as_slice);
+        both = both.reweighted(places.zip(even.iter().copied()));
+    }
+    both
 }
 
 /// A mixture beside one that is fitted to weighted draws.
@@ -114,30 +143,14 @@ pub(super) fn fitted(
     beside(mixture, &rows, &cut(found), seed)
 }
 
-/// A mixture beside one that is fitted to draws that were moved on.
-pub(super) fn widened(
-    mixture: &Mixture,
-    moved: &Moved,
-    seed: Seed,
-) -> Mixture {
-    let even = vec![1.0 / moved.places.len() as f64; moved.places.len()];
-    beside(mixture, &moved.places, &even, seed)
-}
-
 fn beside(
     mixture: &Mixture,
     rows: &[Vec<f64>],
     weights: &[f64],
     seed: Seed,
 ) -> Mixture {
-    let fitted = Mixture::fit(rows, weights, FITTED, &mut seed.rng());
-    let mut both = match fitted {
-        Some(fitted) => fitted.beside(mixture.clone()),
-        None => mixture.clone(),
-    };
-    for _ in 0..REWEIGHTED {
-        let places = rows.iter().map(Vec::as_slice);
-        both = both.reweighted(places.zip(weights.iter().copied()));
-    }
-    both
+    Mixture::fit(rows, weights, FITTED, &mut seed.rng()).map_or_else(
+        || mixture.clone(),
+        |fitted| fitted.beside(mixture.clone()),
+    )
 }

@@ -138,7 +138,9 @@ mod tests {
 
     #[test]
     fn as_many_draws_as_the_error_asks_for() {
-        let schedule = Schedule { error: 0.05, ..Schedule::default() };
+        let final_draws = (1000, 6000);
+        let schedule =
+            Schedule { error: 0.05, final_draws, ..Schedule::default() };
         let of = |excess: f64, precision: Precision| {
             count(&frozen(excess), &schedule, precision)
         };
@@ -152,7 +154,8 @@ mod tests {
     #[test]
     fn the_evidence_is_the_known_one_with_no_less_than_the_error_seen() {
         let posterior = Posterior::new(&Seen).unwrap();
-        let schedule = Schedule::default();
+        let final_draws = (1000, 6000);
+        let schedule = Schedule { final_draws, ..Schedule::default() };
         let known = StatrsNormal::new(0.0, 2.0_f64.sqrt()).unwrap();
         let of = |excess: f64, precision: Precision| {
             let frozen = frozen(excess);

@@ -32,6 +32,9 @@ pub(crate) struct Schedule {
     /// proposal is good, and the most rounds in all.
     pub(crate) judging_draws: usize,
     pub(crate) rounds: u64,
+    /// Before which round a good proposal still gets components where single
+    /// draws weigh much: not where the density is rough.
+    pub(crate) mended_until: u64,
     /// The effective share of draws at which a proposal is good, with a Pareto
     /// tail index below 0.7: above it the mean of the weights has no variance
     /// worth the name (Vehtari et al. 2024).
@@ -104,6 +107,7 @@ impl Default for Schedule {
             reweighting_rounds: 2,
             judging_draws: 2000,
             rounds: 7,
+            mended_until: 0,
             good_share: 0.03,
             ample_share: 0.1,
             estimates: 2,

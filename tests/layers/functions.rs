@@ -13,7 +13,6 @@ const LEFT: &[&str] = &[
     "src/calibrate.rs calibrate",
     "src/calibrate.rs parameters",
     "src/diagnosis/evidence/attribute.rs attribute",
-    "src/infer/adapt.rs adapted",
     "src/model/run.rs observe",
     "src/physics/ahead.rs cross",
     "src/report/fixture.rs calibration",

@@ -13,7 +13,7 @@ use super::edges::{Edges, on_line};
 use crate::error::Result;
 use crate::infer::{HeldGrid, HeldPlace};
 use crate::mechanism::{Mechanism, Unknown};
-use crate::model::Posterior;
+use crate::model::{Information, Posterior};
 use crate::prior::{AnyPrior, Prior};
 use crate::scalar::{Grad, Plain, Real};
 
@@ -164,48 +164,11 @@ impl Screen<'_, '_> {
         let prior = &self.amplitude.prior;
         let signed = self.amplitude.is_signed();
         let small = if signed { 0.0 } else { on_line(prior, HARDLY) };
-        let (stretch, pull) = along_line(prior, small);
-        let index = self.before.len();
-        let informed = (0..self.edges.borders())
-            .into_par_iter()
-            .map(|i| {
-                let line = self.line(small, &self.edges.onwards(i));
-                let about = self.posterior.information(&line)?;
-                Ok(about.density.on_line().is_finite().then_some(about))
-            })
-            .collect::<Result<Vec<_>>>()?;
-        let Some(last) = informed.iter().flatten().last() else {
+        let informed = self.informed(small)?;
+        let Some(effects) = self.effects(&informed, small) else {
             return Ok(None);
         };
-        let own: Vec<usize> = (0..index)
-            .chain(index + 1 + self.edges.count()..last.gradient.len())
-            .collect();
-        let inner = last.precision.select_rows(&own).select_columns(&own);
-        let Some(factor) = inner.cholesky() else { return Ok(None) };
-        let lower = factor.l();
-        let Some(rest) =
-            lower.solve_lower_triangular(&last.gradient.select_rows(&own))
-        else {
-            return Ok(None);
-        };
-        let (count, data) = (informed.len(), last.slopes.ncols());
-        let mut columns = DMatrix::zeros(data, count);
-        let mut follows = DMatrix::zeros(own.len(), count);
-        let mut score = DVector::zeros(count);
-        for (i, about) in informed.iter().enumerate() {
-            let Some(about) = about else { continue };
-            if about.slopes.ncols() != data {
-                continue;
-            }
-            let column = about.slopes.row(index).transpose() / stretch;
-            let across = about.slopes.select_rows(&own) * &column;
-            if let Some(across) = lower.solve_lower_triangular(&across) {
-                score[i] = (about.gradient[index] - pull) / stretch
-                    - across.dot(&rest);
-                columns.set_column(i, &column);
-                follows.set_column(i, &across);
-            }
-        }
+        let Effects { columns, follows, score } = effects;
         let sd = prior.quantile(DEVIATION).unwrap_or(1.0);
         Ok(Some(Scores {
             products: columns.tr_mul(&columns) - follows.tr_mul(&follows),
@@ -214,6 +177,74 @@ impl Screen<'_, '_> {
             signed,
             until_end: self.edges.count() == 1,
         }))
+    }
+
+    /// The density with a small amplitude from each border on.
+    fn informed(&self, small: f64) -> Result<Vec<Option<Information>>> {
+        (0..self.edges.borders())
+            .into_par_iter()
+            .map(|i| {
+                let line = self.line(small, &self.edges.onwards(i));
+                let about = self.posterior.information(&line)?;
+                Ok(about.density.on_line().is_finite().then_some(about))
+            })
+            .collect()
+    }
+
+    /// What the amplitude does from each border on; `None` where nothing can
+    /// be told.
+    fn effects(
+        &self,
+        informed: &[Option<Information>],
+        small: f64,
+    ) -> Option<Effects> {
+        let (stretch, pull) = along_line(&self.amplitude.prior, small);
+        let index = self.before.len();
+        let last = informed.iter().flatten().last()?;
+        let own: Vec<usize> = (0..index)
+            .chain(index + 1 + self.edges.count()..last.gradient.len())
+            .collect();
+        let inner = last.precision.select_rows(&own).select_columns(&own);
+        let lower = inner.cholesky()?.l();
+        let rest =
+            lower.solve_lower_triangular(&last.gradient.select_rows(&own))?;
+        let data = last.slopes.ncols();
+        let mut effects = Effects::none(informed.len(), own.len(), data);
+        for (i, about) in informed.iter().enumerate() {
+            let Some(about) = about.as_ref() else { continue };
+            if about.slopes.ncols() != data {
+                continue;
+            }
+            let column = about.slopes.row(index).transpose() / stretch;
+            let across = about.slopes.select_rows(&own) * &column;
+            let across = lower.solve_lower_triangular(&across)?;
+            effects.score[i] =
+                (about.gradient[index] - pull) / stretch - across.dot(&rest);
+            effects.columns.set_column(i, &column);
+            effects.follows.set_column(i, &across);
+        }
+        Some(effects)
+    }
+}
+
+/// What an amplitude does from each border on, a column for each.
+struct Effects {
+    /// To the innovations.
+    columns: DMatrix<f64>,
+    /// To what all other coordinates have to follow, in units of how sharply
+    /// these are known.
+    follows: DMatrix<f64>,
+    /// To the log density, once these have followed.
+    score: DVector<f64>,
+}
+
+impl Effects {
+    fn none(borders: usize, own: usize, data: usize) -> Self {
+        Self {
+            columns: DMatrix::zeros(data, borders),
+            follows: DMatrix::zeros(own, borders),
+            score: DVector::zeros(borders),
+        }
     }
 }
 

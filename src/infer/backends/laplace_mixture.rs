@@ -54,6 +54,10 @@ impl Backend for LaplaceMixture {
     }
 }
 
+/// The effective share that makes a proposal good where nothing is known of the
+/// posterior: a funnel's neck is missed by one that does for a mechanism's.
+const GENERAL: f64 = 0.1;
+
 impl LaplaceMixture {
     /// With a search space of one's own.
     pub fn within(space: SearchSpace) -> Self {
@@ -66,6 +70,10 @@ impl LaplaceMixture {
         let schedule = Schedule {
             learning_draws: (draws / 10).clamp(600, 4000),
             judging_draws: (draws / 5).clamp(2000, 8000),
+            moved: (draws / 5).clamp(400, 2000),
+            good_share: GENERAL,
+            rounds: 12,
+            mended_until: 10,
             final_draws: (draws, draws),
             ..Schedule::default()
         };

@@ -48,7 +48,7 @@ impl Base {
                 self.particle(posterior, mixture.draw(rng))
             }
             _ => match drawn(posterior, rng)? {
-                Some((density, z)) => Ok(self.weighed(z, &density)),
+                Some((_, z)) => self.particle(posterior, z),
                 None => Ok(Particle::without_density(posterior.dimension())),
             },
         }
