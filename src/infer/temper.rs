@@ -22,7 +22,7 @@ const ALIKE: f64 = 1.0;
 
 /// Tempers from a frozen proposal, and lets it learn from the particles. Where
 /// its weights are good then, fresh draws of it make the estimate; else
-/// tempering's own is the one.
+/// the sharper of the two is the one.
 ///
 /// # Errors
 /// What no other parameter values would mend.
@@ -60,24 +60,29 @@ pub(super) fn tempered(
         estimated(posterior, &again, schedule, precision, seed.child(3));
     Ok(match sampled {
         Ok(sampled) if again.good && sampled.does => sampled.made,
-        Ok(sampled) => compared(led, &sampled.made),
+        Ok(sampled) => compared(led, sampled.made),
         Err(_) => led,
     })
 }
 
-/// Tempering's estimate, with an error no smaller than half of what the other
-/// differs by.
-fn compared(mut led: Inference, other: &Inference) -> Inference {
-    let (Some(one), Some(other)) = (&mut led.evidence, &other.evidence) else {
-        return led;
+/// The sharper of two estimates, with an error no smaller than half of what
+/// the other differs by.
+fn compared(led: Inference, sampled: Inference) -> Inference {
+    let error = |of: &Inference| of.evidence.as_ref().map(|one| one.se);
+    let (mut sharp, other) = match (error(&led), error(&sampled)) {
+        (Some(one), Some(other)) if other < one => (sampled, led),
+        (Some(_), Some(_)) => (led, sampled),
+        _ => return led,
     };
-    let apart = (one.log - other.log).abs();
-    one.se = one.se.max(0.5 * apart);
-    if apart > ALIKE {
-        led.warnings.push(format!(
-            "tempering and importance sampling find log evidences that are \
-             {apart:.1} apart: the first is stated"
-        ));
+    if let (Some(one), Some(other)) = (&mut sharp.evidence, &other.evidence) {
+        let apart = (one.log - other.log).abs();
+        one.se = one.se.max(0.5 * apart);
+        if apart > ALIKE {
+            sharp.warnings.push(format!(
+                "tempering and importance sampling find log evidences that \
+                 are {apart:.1} apart: the sharper one is stated"
+            ));
+        }
     }
-    led
+    sharp
 }

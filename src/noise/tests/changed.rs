@@ -107,8 +107,8 @@ fn without_a_process_between_steps_there_is_no_correlation() {
         close(found.value(), expected, 1e-13);
     }
     // The slope of phi^0.5 is infinite at 0.
-    let mut change = Alteration::default();
-    change.phi = Real::<Grad<1>>::variable(0.0, 0);
+    let phi = Real::<Grad<1>>::variable(0.0, 0);
+    let change = Alteration { phi, ..Alteration::default() };
     let base = Iid { sigma2: Real::new(0.7) };
     let noise = Altered { base: &base, change, covariate: &[] };
     let found = noise.log_likelihood(&at, &lifted(&r)).unwrap();
