@@ -1,7 +1,7 @@
 //! The thresholds of the engine, each with its reason.
 //!
-//! docs/engine.md has the study over many events that they come from:
-//! `cargo run --release --example 12_engine` makes it again.
+//! docs/engine.md has a study of five events that they are held against:
+//! `cargo run --release --example 13_evidence_repeats` makes it again.
 
 /// How the Laplace mixture searches, learns, and is judged.
 #[derive(Debug, Clone, Copy, PartialEq)]
