@@ -44,7 +44,7 @@ impl Frozen {
     ///
     /// # Errors
     /// What no other parameter values would mend.
-    pub(super) fn learned(
+    pub(crate) fn learned(
         mut self,
         posterior: &Posterior<'_>,
         schedule: &Schedule,
@@ -59,7 +59,6 @@ impl Frozen {
             let quality = quality(&found);
             self.log = log_mean_weight(&found);
             self.excess = 1.0 / quality.0 - 1.0;
-
             let early = self.round < schedule.reweighting_rounds;
             self.round += 1;
             if !early {
@@ -125,7 +124,9 @@ fn mended(mixture: &Mixture, found: &[Particle]) -> Option<Mixture> {
 fn widened(mixture: &Mixture, moved: &Moved, seed: Seed) -> Mixture {
     let rows = &moved.places;
     let even = vec![1.0 / rows.len() as f64; rows.len()];
-    let mut both = beside(mixture, rows, &even, seed);
+    let Some(mut both) = beside(mixture, rows, &even, seed) else {
+        return mixture.clone();
+    };
     for _ in 0..REWEIGHTED {
         let places = rows.iter().map(Vec::as_slice);
         both = both.reweighted(places.zip(even.iter().copied()));
@@ -140,17 +141,18 @@ pub(super) fn fitted(
     seed: Seed,
 ) -> Mixture {
     let rows: Vec<Vec<f64>> = found.iter().map(|p| p.z.clone()).collect();
-    beside(mixture, &rows, &cut(found), seed)
+    let both = beside(mixture, &rows, &cut(found), seed);
+    both.unwrap_or_else(|| mixture.clone())
 }
 
-fn beside(
+/// A mixture beside one that is fitted to weighted places; `None` where these
+/// are too few, or all the same.
+pub(super) fn beside(
     mixture: &Mixture,
     rows: &[Vec<f64>],
     weights: &[f64],
     seed: Seed,
-) -> Mixture {
-    Mixture::fit(rows, weights, FITTED, &mut seed.rng()).map_or_else(
-        || mixture.clone(),
-        |fitted| fitted.beside(mixture.clone()),
-    )
+) -> Option<Mixture> {
+    let fitted = Mixture::fit(rows, weights, FITTED, &mut seed.rng())?;
+    Some(fitted.beside(mixture.clone()))
 }

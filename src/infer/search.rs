@@ -4,8 +4,9 @@
 //! Climbs start from given places and from likely draws of the prior. Along
 //! coordinates that may have many modes, or none, places are held: one damped
 //! step of all other coordinates says what each promises. The promising ones
-//! are climbed further, and the best of those with all coordinates. Profiles along every coordinate tell where the
-//! highest peaks are not as their curvature says.
+//! are climbed further, and the best of those with all coordinates. Steps lead
+//! on from the places that hold most. Profiles along every coordinate tell
+//! where the highest peaks are not as their curvature says.
 
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -73,7 +74,9 @@ pub(super) fn components(
 ) -> Result<Vec<Component>> {
     let mut search = Search::new(posterior, schedule);
     search.climb_from_starts(space, seed)?;
-    search.look(space)?;
+    let glanced = search.look(space)?;
+    search.spread_out()?;
+    search.looked.extend(glanced);
     search.components()
 }
 
@@ -166,8 +169,9 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
     }
 
     /// Looks at every held place, climbs on from the promising ones with the
-    /// place held, and from the best with all coordinates.
-    fn look(&mut self, space: &'s SearchSpace) -> Result<()> {
+    /// place held, and from the best with all coordinates. What is left had
+    /// no more than a glance.
+    fn look(&mut self, space: &'s SearchSpace) -> Result<Vec<Looked<'s>>> {
         let places = space.grids.iter().flat_map(|grid| {
             grid.places.iter().map(move |place| (grid, place))
         });
@@ -182,7 +186,7 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
         let mut promising = spread(&mut found, self.schedule.promising);
         promising
             .par_iter_mut()
-            .try_for_each(|one| one.climb_on(posterior))?;
+            .try_for_each(|one| one.climb_on(posterior, FEW))?;
         by_height(&mut promising);
         let most = (places_of(space) / 4).max(LEAST_CLIMBED);
         let best = promising.iter().take(most.min(self.schedule.climbed));
@@ -191,9 +195,7 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
             self.climb(start.as_slice())?;
         }
         self.looked.extend(promising);
-        self.spread_out()?;
-        self.looked.extend(found);
-        Ok(())
+        Ok(found)
     }
 
     /// Goes on from the places that hold most to those next to them, as long
@@ -201,17 +203,16 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
     fn spread_out(&mut self) -> Result<()> {
         let mut left = self.schedule.surveyed;
         while left > 0 {
-            let next = self.beside(left.min(AT_ONCE));
+            let mut next = self.beside(left.min(AT_ONCE));
             if next.is_empty() {
                 break;
             }
             left = left.saturating_sub(next.len());
             let posterior = self.posterior;
-            let taken = next
-                .into_par_iter()
-                .map(|step| step.taken(posterior))
-                .collect::<Result<Vec<_>>>()?;
-            for step in taken {
+            next.par_iter_mut().try_for_each(|step| {
+                step.to.climb_on(posterior, STEPS_ASIDE)
+            })?;
+            for step in next {
                 self.arrive(step);
             }
         }
@@ -418,7 +419,8 @@ impl<'s> Looked<'s> {
         held.map(off).map(|x| x * x).sum()
     }
 
-    /// Whether another place of its grid is within a share of its spacing.
+    /// Whether another place with the same coordinates held is within a share
+    /// of its spacing.
     fn is_within(&self, other: &Self, share: f64) -> bool {
         let held = self.grid.held.iter().zip(&self.spacing);
         self.grid.held == other.grid.held
@@ -428,7 +430,7 @@ impl<'s> Looked<'s> {
             })
     }
 
-    /// Whether it is within a spacing of another place of its grid.
+    /// Whether it is within a spacing of another such place.
     fn is_next_to(&self, other: &Self) -> bool {
         self.is_within(other, 1.0)
     }
@@ -455,27 +457,18 @@ impl<'s> Looked<'s> {
         .collect()
     }
 
-    fn climb_on(&mut self, posterior: &Posterior<'_>) -> Result<()> {
+    /// Climbs so many steps on, with the place held.
+    fn climb_on(
+        &mut self,
+        posterior: &Posterior<'_>,
+        steps: usize,
+    ) -> Result<()> {
         let (line, held) = (self.peak.line.as_slice(), &self.grid.held[..]);
-        if let Some(peak) = climb_holding(posterior, line, held, FEW)? {
+        if let Some(peak) = climb_holding(posterior, line, held, steps)? {
             self.peak = peak;
             self.weigh();
         }
         Ok(())
-    }
-}
-
-impl<'s> Step<'s> {
-    /// Climbs where it leads to.
-    fn taken(mut self, posterior: &Posterior<'_>) -> Result<Self> {
-        let (line, held) =
-            (self.to.peak.line.as_slice(), &self.to.grid.held[..]);
-        let found = climb_holding(posterior, line, held, STEPS_ASIDE)?;
-        if let Some(peak) = found {
-            self.to.peak = peak;
-            self.to.weigh();
-        }
-        Ok(self)
     }
 }
 

@@ -1,17 +1,14 @@
 //! Tempering from a frozen proposal, where learning alone does not do.
 
-use super::adapt::Frozen;
+use super::adapt::{Frozen, beside};
 use super::backends::Smc;
 use super::estimate::{Precision, estimated};
-use super::proposal::{Base, Mixture};
+use super::proposal::Base;
 use super::schedule::Schedule;
 use super::{Inference, Progress};
 use crate::error::Result;
 use crate::model::Posterior;
 use crate::seed::Seed;
-
-/// The most components fitted to the particles.
-const FITTED: usize = 6;
 
 /// Moves after each step of tempering: what is drawn from the mixture is in
 /// every place already.
@@ -43,11 +40,8 @@ pub(super) fn tempered(
     let (led, places) =
         smc.passage_of(posterior, base, seed.child(0), progress)?;
     let even = vec![1.0 / places.len() as f64; places.len()];
-    let mut rng = seed.child(1).rng();
-    let Some(fitted) = Mixture::fit(&places, &even, FITTED, &mut rng) else {
-        return Ok(led);
-    };
-    let mixture = fitted.beside(frozen.mixture.clone());
+    let both = beside(&frozen.mixture, &places, &even, seed.child(1));
+    let Some(mixture) = both else { return Ok(led) };
     let rounds = schedule.rounds;
     let again = Frozen::new(mixture).learned(
         posterior,

@@ -137,7 +137,8 @@ const DRAWN: usize = 400;
 /// The draws near the ends of each coordinate's middle 95 %.
 fn tails(mut drawn: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let coordinates = drawn.first().map_or(0, Vec::len);
-    let (low, high) = (drawn.len() / 40, drawn.len() - 1 - drawn.len() / 40);
+    let low = drawn.len() / 40;
+    let high = drawn.len().saturating_sub(1 + low);
     (0..coordinates)
         .flat_map(|i| {
             drawn.sort_by(|a, b| a[i].total_cmp(&b[i]));

@@ -87,9 +87,9 @@ impl Prospect {
             if frozen.good || !self.may_reach(threshold) {
                 break;
             }
-            let backend = &self.backend;
-            let seed = seed.child(rounds);
-            let next = backend.learned(&posterior, frozen, rounds, seed)?;
+            let (schedule, seed) =
+                (&self.backend.schedule, seed.child(rounds));
+            let next = frozen.learned(&posterior, schedule, rounds, seed)?;
             self.log = next.log;
             self.frozen = Some(next);
         }
@@ -146,8 +146,8 @@ pub(crate) fn prospect<P: Program>(
         return Ok(Prospect { backend, frozen: None, log });
     }
     let found = backend.searched(&posterior, seed.child(0))?;
-    let seed = seed.child(1);
-    let frozen = backend.learned(&posterior, found, FEW_ROUNDS, seed)?;
+    let (schedule, seed) = (&backend.schedule, seed.child(1));
+    let frozen = found.learned(&posterior, schedule, FEW_ROUNDS, seed)?;
     let log = frozen.log;
     Ok(Prospect { backend, frozen: Some(frozen), log })
 }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::fit::spread;
+use super::others::Others;
 use crate::infer::{HeldGrid, HeldPlace};
 use crate::mechanism::{Mechanism, Unknown};
 use crate::seed::Seed;
@@ -32,34 +33,6 @@ pub(crate) fn even_grids(
         even(&unknowns[along], &others, seed)
     };
     mechanism.amplitudes().into_iter().map(one).collect()
-}
-
-/// Where all other coordinates begin, on the line.
-struct Others {
-    before: Vec<f64>,
-    after: Vec<f64>,
-}
-
-impl Others {
-    /// Those beside a mechanism's unknowns in a range, its others at the
-    /// middle of the line.
-    fn of(
-        unknowns: &[Unknown],
-        along: &Range<usize>,
-        before: &[f64],
-        after: &[f64],
-    ) -> Self {
-        let earlier = vec![0.0; along.start];
-        let later = vec![0.0; unknowns.len() - along.end];
-        Self {
-            before: [before, &earlier].concat(),
-            after: [&later, after].concat(),
-        }
-    }
-
-    fn with(&self, place: &[f64]) -> Vec<f64> {
-        [&self.before, place, &self.after].concat()
-    }
 }
 
 /// Even places along an amplitude and where it is.

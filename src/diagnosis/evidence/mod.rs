@@ -5,4 +5,5 @@ pub(crate) mod attribute;
 mod edges;
 pub(crate) mod fit;
 mod grids;
+mod others;
 mod screen;

@@ -10,6 +10,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::edges::{Edges, on_line};
+use super::others::Others;
 use crate::error::Result;
 use crate::infer::{HeldGrid, HeldPlace};
 use crate::mechanism::{Mechanism, Unknown};
@@ -66,8 +67,6 @@ pub(super) fn edge_grids(
     let unknowns = mechanism.unknowns();
     let mut grids = Vec::new();
     for along in mechanism.amplitudes() {
-        let earlier = vec![0.0; along.start];
-        let later = vec![0.0; unknowns.len() - along.end];
         let Some(edges) = Edges::of(&unknowns[along.clone()], mesh.borders)
         else {
             continue;
@@ -76,8 +75,7 @@ pub(super) fn edge_grids(
             posterior,
             amplitude: &unknowns[along.start],
             edges,
-            before: [before, &earlier].concat(),
-            after: [&later, after].concat(),
+            others: Others::of(&unknowns, &along, before, after),
         };
         grids.extend(screen.grid(mesh)?);
     }
@@ -89,31 +87,31 @@ struct Screen<'a, 'm> {
     posterior: &'a Posterior<'m>,
     amplitude: &'a Unknown,
     edges: Edges<'a>,
-    before: Vec<f64>,
-    after: Vec<f64>,
+    others: Others,
 }
 
 impl Screen<'_, '_> {
     fn line(&self, amplitude: f64, edges: &[f64]) -> Vec<f64> {
-        [&self.before, &[amplitude][..], edges, &self.after].concat()
+        self.others.with(&[&[amplitude], edges].concat())
     }
 
     /// The best places; `None` where nothing can be told.
     fn grid(&self, mesh: Mesh) -> Result<Option<HeldGrid>> {
         let Some(scores) = self.scores()? else { return Ok(None) };
+        let ranked = scores.ranked();
         let far = mesh.levels[0].0;
         let places = mesh
             .levels
             .iter()
             .flat_map(|&(apart, most)| {
-                let chosen = scores.best(apart, most).into_iter();
+                let chosen = best(&ranked, apart, most).into_iter();
                 chosen.flat_map(move |one| {
                     self.places(&one, apart, apart == far)
                 })
             })
             .chain(self.halves(mesh.halves))
             .collect();
-        let first = self.before.len() + 1;
+        let first = self.others.before.len() + 1;
         let held = (first..first + self.edges.count()).collect();
         Ok(Some(HeldGrid { held, places }))
     }
@@ -199,7 +197,7 @@ impl Screen<'_, '_> {
         small: f64,
     ) -> Option<Effects> {
         let (stretch, pull) = along_line(&self.amplitude.prior, small);
-        let index = self.before.len();
+        let index = self.others.before.len();
         let last = informed.iter().flatten().last()?;
         let own: Vec<usize> = (0..index)
             .chain(index + 1 + self.edges.count()..last.gradient.len())
@@ -295,33 +293,34 @@ impl Scores {
         Scored { from, to, amplitude: score / bend, gain }
     }
 
-    fn all(&self) -> Vec<Scored> {
+    /// That of every stretch, the best first.
+    fn ranked(&self) -> Vec<Scored> {
         let count = self.score.len();
-        (0..count)
+        let mut all: Vec<Scored> = (0..count)
             .flat_map(|from| {
                 let first = if self.until_end { count } else { from + 1 };
                 (first..=count).map(move |to| self.of(from, to))
             })
-            .collect()
-    }
-
-    /// The best of those so far from each other.
-    fn best(&self, apart: usize, most: usize) -> Vec<Scored> {
-        let mut all = self.all();
+            .collect();
         all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        let mut chosen: Vec<Scored> = Vec::with_capacity(most);
-        for one in all {
-            let near = |other: &Scored| {
-                one.from.abs_diff(other.from) <= apart
-                    && one.to.abs_diff(other.to) <= apart
-            };
-            if !chosen.iter().any(near) {
-                chosen.push(one);
-            }
-            if chosen.len() == most {
-                break;
-            }
-        }
-        chosen
+        all
     }
+}
+
+/// The first of those so far from each other.
+fn best(ranked: &[Scored], apart: usize, most: usize) -> Vec<Scored> {
+    let mut chosen: Vec<Scored> = Vec::with_capacity(most);
+    for one in ranked {
+        let near = |other: &Scored| {
+            one.from.abs_diff(other.from) <= apart
+                && one.to.abs_diff(other.to) <= apart
+        };
+        if !chosen.iter().any(near) {
+            chosen.push(*one);
+        }
+        if chosen.len() == most {
+            break;
+        }
+    }
+    chosen
 }

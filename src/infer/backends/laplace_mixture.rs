@@ -112,23 +112,8 @@ impl LaplaceMixture {
         seed: Seed,
     ) -> Result<Frozen> {
         let found = self.searched(posterior, seed.child(0))?;
-        let rounds = self.schedule.rounds;
-        self.learned(posterior, found, rounds, seed.child(1))
-    }
-
-    /// The same after so many rounds of learning in all, unless it is good
-    /// before.
-    ///
-    /// # Errors
-    /// A model that fails.
-    pub(crate) fn learned(
-        &self,
-        posterior: &Posterior<'_>,
-        frozen: Frozen,
-        rounds: u64,
-        seed: Seed,
-    ) -> Result<Frozen> {
-        frozen.learned(posterior, &self.schedule, rounds, seed)
+        let Self { schedule, .. } = self;
+        found.learned(posterior, schedule, schedule.rounds, seed.child(1))
     }
 
     /// The evidence from a frozen proposal.
