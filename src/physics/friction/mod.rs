@@ -143,8 +143,8 @@ pub enum Varies {
     Nowhere,
     /// Constant on each piece of the track: exact solution.
     WithPlace,
-    /// With the speed too, in another way than up to its square: the motion
-    /// is integrated numerically.
+    /// With the speed too, in another way than up to its square: on each leg
+    /// of the motion a force of the exact family is fitted to the law.
     WithSpeed,
 }
 
