@@ -13,8 +13,8 @@
 //! a proposal for all coordinates at once may do, as with two events; with
 //! five of four parameters each, the poor tails of every one multiply. Then
 //! theta is drawn from a mixture, as [`LaplaceMixture`] does with all
-//! coordinates, and every Z_i(theta) is estimated by importance sampling of its
-//! own: a product of unbiased estimates leaves the estimate of Z unbiased
+//! coordinates, and every Z_i(theta) is estimated by importance sampling of
+//! its own: a product of unbiased estimates leaves the estimate of Z unbiased
 //! (Tran, Scharth, Gunawan, Kohn, Brown, Hawkins 2021).
 
 mod assembly;
