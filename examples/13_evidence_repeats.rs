@@ -68,6 +68,41 @@ fn mean(x: &[f64]) -> f64 {
     x.iter().sum::<f64>() / x.len() as f64
 }
 
+/// What each seed says of one candidate.
+struct Repeats {
+    log_evidence: Vec<f64>,
+    stated: Vec<f64>,
+}
+
+impl Repeats {
+    /// How far each seed is off their mean, in ln.
+    fn off(&self) -> Vec<f64> {
+        let middle = mean(&self.log_evidence);
+        self.log_evidence.iter().map(|log| log - middle).collect()
+    }
+
+    /// A row of the table.
+    fn row(&self, label: &str) -> String {
+        let (middle, stated) = (mean(&self.log_evidence), mean(&self.stated));
+        let off = self.off();
+        let most = off.iter().map(|x| x.abs()).fold(0.0, f64::max);
+        let square = off.iter().map(|x| x * x).sum::<f64>();
+        let sd = (square / (off.len() as f64 - 1.0)).sqrt();
+        format!(
+            "| {label} | {middle:.2} | {most:.2} | {sd:.3} | {stated:.3} |"
+        )
+    }
+
+    /// How far each seed is off, in stated errors.
+    fn scores(&self) -> Vec<f64> {
+        // The mean of n takes a degree of freedom away.
+        let n = self.stated.len() as f64;
+        let scale = (n / (n - 1.0)).sqrt();
+        let off = self.off().into_iter().zip(&self.stated);
+        off.map(|(x, se)| scale * x / se).collect()
+    }
+}
+
 /// ln evidence, its stated error, and how far each seed is off, by candidate.
 fn study(name: &str, model: &Assembled, seeds: u64) -> Result<()> {
     let blocks = declared_blocks(model)?;
@@ -80,36 +115,24 @@ fn study(name: &str, model: &Assembled, seeds: u64) -> Result<()> {
         })
         .collect::<Result<Vec<_>>>()?;
     let seconds = begun.elapsed().as_secs_f64() / seeds as f64;
-    let logs = |i: usize| -> Vec<f64> {
-        found.iter().map(|f| f.candidates[i].log_evidence).collect()
+    let repeats = |i: usize| {
+        let of = found.iter().map(|found| &found.candidates[i]);
+        let (log_evidence, stated) =
+            of.map(|one| (one.log_evidence, one.se)).unzip();
+        Repeats { log_evidence, stated }
     };
-    let best = (0..all.len()).map(|i| mean(&logs(i)));
-    let best = best.fold(f64::NEG_INFINITY, f64::max);
+    let repeats: Vec<Repeats> = (0..all.len()).map(repeats).collect();
+    let middle = |of: &Repeats| mean(&of.log_evidence);
+    let best = repeats.iter().map(middle).fold(f64::NEG_INFINITY, f64::max);
     println!("\n{name}, {seconds:.2} s a seed");
     println!("| candidate | ln evidence | most off | sd | stated |");
     println!("|---|---|---|---|---|");
     let mut scores = Vec::new();
-    for (i, mechanism) in all.iter().enumerate() {
-        let logs = logs(i);
-        let middle = mean(&logs);
-        if middle < best - FAR {
-            continue;
+    for (of, mechanism) in repeats.iter().zip(&all) {
+        if middle(of) >= best - FAR {
+            println!("{}", of.row(&mechanism.label()));
+            scores.extend(of.scores());
         }
-        let errors: Vec<f64> =
-            found.iter().map(|f| f.candidates[i].se).collect();
-        let off = logs.iter().map(|log| log - middle);
-        let most = off.clone().map(f64::abs).fold(0.0, f64::max);
-        let spread = off.clone().map(|x| x * x).sum::<f64>();
-        let sd = (spread / (logs.len() as f64 - 1.0)).sqrt();
-        let stated = mean(&errors);
-        let label = mechanism.label();
-        println!(
-            "| {label} | {middle:.2} | {most:.2} | {sd:.3} | {stated:.3} |"
-        );
-        // The mean of n takes a degree of freedom away.
-        let n = logs.len() as f64;
-        let scale = (n / (n - 1.0)).sqrt();
-        scores.extend(off.zip(&errors).map(|(x, se)| scale * x / se));
     }
     let square = scores.iter().map(|z| z * z).sum::<f64>();
     let sd = (square / scores.len() as f64).sqrt();

@@ -104,3 +104,41 @@ impl<S> OneNumber<S> for S {
         value
     }
 }
+
+/// A field that takes the values of several parameters: a list.
+#[diagnostic::on_unimplemented(
+    message = "a list cannot fill a field of type `{Self}`",
+    label = "a number takes one prior, or one value: leave out `[` and `]`"
+)]
+pub trait ManyNumbers<S>: Sized {
+    /// The field of those values.
+    fn of(values: impl Iterator<Item = S>) -> Self;
+}
+
+// The compiler is to name this trait, not what it stands for.
+#[diagnostic::do_not_recommend]
+impl<S, F: FromIterator<S>> ManyNumbers<S> for F {
+    #[inline(always)]
+    fn of(values: impl Iterator<Item = S>) -> Self {
+        values.collect()
+    }
+}
+
+/// A known value that fits a field.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot fill a field of type `{F}`",
+    label = "a number takes a number, such as `0.3`, and a list takes a list, \
+             such as `[0.3]`"
+)]
+pub trait Fills<F> {
+    /// The field of that value.
+    fn fill(self) -> F;
+}
+
+#[diagnostic::do_not_recommend]
+impl<F, V: Into<F>> Fills<F> for V {
+    #[inline(always)]
+    fn fill(self) -> F {
+        self.into()
+    }
+}

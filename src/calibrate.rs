@@ -55,72 +55,65 @@ pub fn calibrate(
     let root = Seed::new(seed);
     let mut found = infer(backend, &posterior, root.child(0), progress)?;
     let draws = draws_of(&found, backend)?;
-    // Those of chains have been told already, with the warnings.
-    let summaries = match found.summaries.is_empty() {
-        false => std::mem::take(&mut found.summaries),
-        true => {
-            let summaries = summarise(&draws);
-            let poor = convergence(&summaries, draws.chains());
-            found.warnings.extend(poor);
-            summaries
-        }
-    };
+    let summaries = summaries(&mut found, &draws);
     let median: Vec<f64> = summaries.iter().map(|s| s.q50).collect();
     let search = Map { starts: 4, from: vec![median.clone()] };
-    let mode = infer(&search, &posterior, root.child(1), progress)?;
+    let mode = infer(&search, &posterior, root.child(1), progress)?.mode;
     if found.evidence.is_none() && posterior.is_proper() {
-        progress.begin("evidence", None);
-        let sampler = ImportanceSampling {
-            draws: EVIDENCE_DRAWS,
-            ..ImportanceSampling::default()
-        };
-        let few = draws.few(FITTED)?;
-        let estimate =
-            sampler.from_draws(&posterior, &few, root.child(2), progress)?;
-        found.evidence = estimate.evidence;
-        found.warnings.extend(estimate.warnings);
+        let seed = root.child(2);
+        add_evidence(&mut found, &posterior, &draws, seed, progress)?;
     }
     progress.begin("predicting", None);
     let series = recording(model)?;
-    let predicted = posterior_predictive(
-        &posterior,
-        &draws,
-        series.times(),
-        root.child(3),
-    )?;
-    let prior =
-        prior_predictive(&posterior, 1000, series.times(), root.child(4)).ok();
+    let times = series.times();
+    let predicted =
+        posterior_predictive(&posterior, &draws, times, root.child(3))?;
+    let prior = prior_predictive(&posterior, 1000, times, root.child(4)).ok();
     let mut report = CalibrationReport {
-        event: model.event().name().to_owned(),
-        friction: model.friction(),
-        noise: model.noise(),
-        mechanisms: model.labels(),
         backend: backend.name().to_owned(),
         seed,
-        parameters: parameters(model, &draws, &summaries, mode.mode.as_ref()),
-        acceptance: draws
-            .acceptance()
-            .iter()
-            .copied()
-            .filter(|a| a.is_finite())
-            .collect(),
+        parameters: parameters(model, &draws, &summaries, mode.as_ref()),
         simulations: posterior.cost().simulations,
-        seconds: found.cost.seconds,
-        evidence: found.evidence.as_ref().map(|e| EvidenceReport {
-            value: e.log,
-            se: e.se,
-            method: e.method.clone(),
-        }),
-        warnings: found.warnings,
-        synthetic: is_synthetic(model.event().name()),
         prior_bands: prior,
-        ..CalibrationReport::default()
+        ..of_model(model)
     };
+    tell_run(&mut report, found, &draws);
     tell_recording(&mut report, series, predicted);
     check_fit(&mut report, &posterior, series, &median)?;
     report.checks.kolmogorov_smirnov_p = chains_alike(&draws);
     report.track = track(model, &median)?;
     Ok(Calibration { report, draws })
+}
+
+/// The summaries of the draws, with a warning where they are poor; those of
+/// chains have been told already.
+fn summaries(found: &mut Inference, draws: &Draws) -> Vec<Summary> {
+    if !found.summaries.is_empty() {
+        return std::mem::take(&mut found.summaries);
+    }
+    let summaries = summarise(draws);
+    found.warnings.extend(convergence(&summaries, draws.chains()));
+    summaries
+}
+
+/// Finds the evidence by importance sampling about the draws.
+fn add_evidence(
+    found: &mut Inference,
+    posterior: &Posterior<'_>,
+    draws: &Draws,
+    seed: Seed,
+    progress: &dyn Progress,
+) -> Result<()> {
+    progress.begin("evidence", None);
+    let sampler = ImportanceSampling {
+        draws: EVIDENCE_DRAWS,
+        ..ImportanceSampling::default()
+    };
+    let few = draws.few(FITTED)?;
+    let estimate = sampler.from_draws(posterior, &few, seed, progress)?;
+    found.evidence = estimate.evidence;
+    found.warnings.extend(estimate.warnings);
+    Ok(())
 }
 
 fn draws_of(found: &Inference, backend: &dyn Backend) -> Result<Draws> {
@@ -139,6 +132,30 @@ fn recording(model: &Assembled) -> Result<&Series> {
         .recordings()
         .next()
         .ok_or_else(|| Error::input("the event has no recording"))
+}
+
+fn of_model(model: &Assembled) -> CalibrationReport {
+    let event = model.event().name();
+    CalibrationReport {
+        event: event.to_owned(),
+        friction: model.friction(),
+        noise: model.noise(),
+        mechanisms: model.labels(),
+        synthetic: is_synthetic(event),
+        ..CalibrationReport::default()
+    }
+}
+
+fn tell_run(report: &mut CalibrationReport, found: Inference, draws: &Draws) {
+    let acceptance = draws.acceptance().iter().copied();
+    report.acceptance = acceptance.filter(|a| a.is_finite()).collect();
+    report.seconds = found.cost.seconds;
+    report.evidence = found.evidence.map(|e| EvidenceReport {
+        value: e.log,
+        se: e.se,
+        method: e.method,
+    });
+    report.warnings = found.warnings;
 }
 
 fn tell_recording(
@@ -210,7 +227,7 @@ fn parameters(
     summaries
         .par_iter()
         .enumerate()
-        .map(|(i, s)| {
+        .map(|(i, summary)| {
             let (_, prior) = priors[i];
             let curve = curve(prior, draws, i);
             // A length's prior is another wherever the stretch begins.
@@ -221,29 +238,36 @@ fn parameters(
                 _ => (String::new(), prior_curve(prior, &curve)),
             };
             ParameterReport {
-                name: s.name.clone(),
-                unit: s.unit.clone(),
                 of_errors: !model.is_of_motion(i),
                 map: mode.map(|m| m.natural[i]),
-                mean: s.mean,
-                sd: s.sd,
-                q025: s.q025,
-                q05: s.q05,
-                q50: s.q50,
-                q95: s.q95,
-                q975: s.q975,
-                rhat: s.rhat,
-                ess_bulk: s.ess_bulk,
-                ess_tail: s.ess_tail,
-                mcse_mean: s.mcse_mean,
                 prior_text: format!("{prior}{also}"),
                 prior_density: alone,
                 posterior_density: curve,
                 chains: draws.column(i).iter().map(|c| thin(c)).collect(),
                 pooled: rows.iter().map(|row| row[i]).collect(),
+                ..of_summary(summary)
             }
         })
         .collect()
+}
+
+fn of_summary(s: &Summary) -> ParameterReport {
+    ParameterReport {
+        name: s.name.clone(),
+        unit: s.unit.clone(),
+        mean: s.mean,
+        sd: s.sd,
+        q025: s.q025,
+        q05: s.q05,
+        q50: s.q50,
+        q95: s.q95,
+        q975: s.q975,
+        rhat: s.rhat,
+        ess_bulk: s.ess_bulk,
+        ess_tail: s.ess_tail,
+        mcse_mean: s.mcse_mean,
+        ..ParameterReport::default()
+    }
 }
 
 fn thin(chain: &[f64]) -> Vec<f64> {

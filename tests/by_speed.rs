@@ -12,7 +12,7 @@ use couloir::physics::{
     Friction, Path, Rate, Release, Site, State, Sum, Track, Varies, rest,
     sample,
 };
-use couloir::scalar::{Kind, Plain, Real};
+use couloir::scalar::{Grad, Kind, Plain, Real};
 use nalgebra::Vector2;
 use ode_solvers::{Dop853, OutputType, System};
 use rand::RngExt;
@@ -135,6 +135,103 @@ fn a_kink_is_passed() {
     let law = Resists(|u| 1.0 + 0.2 * (u - 15.0).max(0.0));
     let error = error(&law);
     assert!(error < 1e-7, "{error:e}");
+}
+
+/// Dry friction that is lower by 0.1 from a speed \[m/s\] on.
+#[derive(Debug, Clone, Copy)]
+struct Jumps<K: Kind> {
+    mu: Real<K>,
+    at: f64,
+}
+
+impl<K: Kind> Friction<K> for Jumps<K> {
+    fn varies(&self) -> Varies {
+        Varies::WithSpeed
+    }
+    fn rate(&self, _: &Site, speed: Real<K>) -> Rate<K> {
+        let less = if speed < self.at { 0.0 } else { 0.1 };
+        Rate { mu: self.mu - less, ..Rate::default() }
+    }
+}
+
+/// A run down an even slope, under [`Jumps`].
+struct Run {
+    track: Track,
+    mu: f64,
+    at: f64,
+    /// The speed at the start.
+    from: f64,
+}
+
+impl Run {
+    /// Up to the jump on a steep slope, or down to it on a flat one.
+    fn any(case: u64) -> Self {
+        let mut rng = Seed::new(43).child(case).rng();
+        let (at, mu) =
+            (rng.random_range(3.0..15.0), rng.random_range(0.3..0.4));
+        let (degrees, from) = match case % 2 {
+            0 => (rng.random_range(28.0..45.0), rng.random_range(0.0..at)),
+            _ => (rng.random_range(0.0..8.0), at + rng.random_range(0.0..5.0)),
+        };
+        let track = Track::incline(degrees, 2000.0).unwrap();
+        Self { track, mu, at, from }
+    }
+
+    /// Speed and place after a time: on either side of the jump the force is
+    /// constant. `None` once the mass rests.
+    fn exact(&self, mu: f64, time: f64) -> Option<[f64; 2]> {
+        let piece = self.track.pieces()[0];
+        let is_fast = self.from >= self.at;
+        let force = |less: f64| piece.pull - (mu - less) * piece.load;
+        let [before, beyond] = match is_fast {
+            true => [force(0.1), force(0.0)],
+            false => [force(0.0), force(0.1)],
+        };
+        let first = time.min((self.at - self.from) / before);
+        let (then, u) = (time - first, self.from + before * first);
+        let place = 0.5 * (self.from + u) * first;
+        let speed = u + beyond * then;
+        let place = place + 0.5 * (u + speed) * then;
+        (speed > 0.0).then_some([speed, place])
+    }
+
+    /// The same as solved, with derivatives by mu.
+    fn solved(&self, times: &[f64]) -> Vec<[Real<Grad<1>>; 2]> {
+        let law = Jumps { mu: Real::variable(self.mu, 0), at: self.at };
+        let path = Path { track: &self.track, depth: 1.0 };
+        let speed = self.from.into();
+        let release = Release { distance: 0.0.into(), speed };
+        let mut all = Vec::new();
+        let visit = |s: State<Grad<1>>| all.push([s.speed, s.distance]);
+        sample(&path, &law, release, times, false, visit).unwrap();
+        all
+    }
+}
+
+#[test]
+fn a_jump_is_passed_at_its_speed() {
+    let times = [0.5, 1.0, 2.0, 3.0];
+    let (mut worst, mut compared) = ([0.0_f64; 2], 0);
+    for run in (0..300).map(Run::any) {
+        for (found, time) in run.solved(&times).into_iter().zip(times) {
+            let step = 1e-6;
+            let at = |shift: f64| run.exact(run.mu + shift, time);
+            let all = (at(-step), at(0.0), at(step));
+            let (Some(less), Some(known), Some(more)) = all else { continue };
+            for i in 0..2 {
+                let scale = [run.at, known[i]][i];
+                let off = (found[i].value() - known[i]).abs() / scale;
+                worst[0] = worst[0].max(off);
+                let slope = 0.5 * (more[i] - less[i]) / step;
+                let off = (found[i].partial(0) / slope - 1.0).abs();
+                worst[1] = worst[1].max(off);
+            }
+            compared += 1;
+        }
+    }
+    assert!(compared > 800, "{compared}");
+    // A jump is met within 2e-7 of its speed.
+    assert!(worst[0] < 1e-6 && worst[1] < 1e-5, "{worst:?}");
 }
 
 #[test]

@@ -258,12 +258,12 @@ const COMPARED: usize = 4;
 fn explore(case: Case) -> Findings {
     let model = model(case);
     let posterior = Posterior::new(&model).unwrap();
-    let run = |backend: &dyn Backend, seed: u64| {
-        // Of its own for each event: runs from one seed err alike.
-        let seed = Seed::new(seed).child(case.index);
-        infer(backend, &posterior, seed, &Quiet).unwrap()
+    // Of its own for each event: runs from one seed err alike.
+    let seed = |seed: u64| Seed::new(seed).child(case.index);
+    let run = |backend: &dyn Backend, number: u64| {
+        infer(backend, &posterior, seed(number), &Quiet).unwrap()
     };
-    let mut runs: Vec<Inference> =
+    let runs: Vec<Inference> =
         (0..SEEDS).map(|seed| run(&Smc::default(), seed)).collect();
     let sampler = ImportanceSampling::default();
     let importance: Vec<Inference> =
@@ -273,27 +273,19 @@ fn explore(case: Case) -> Findings {
     let begun = std::time::Instant::now();
     let bridge = (200..)
         .zip(&runs[COMPARED..2 * COMPARED])
-        .map(|(seed, run)| {
+        .map(|(number, run)| {
             let draws = run.draws.as_ref().unwrap();
-            let seed = Seed::new(seed).child(case.index);
-            on_chains.from_draws(&posterior, draws, seed).unwrap().0
+            on_chains.from_draws(&posterior, draws, seed(number)).unwrap().0
         })
         .collect();
     let bridged = begun.elapsed().as_secs_f64() / COMPARED as f64;
     let chains = run(&on_chains, 300);
-    let draws = runs[1].draws.take().unwrap();
-    let names = draws.names();
-    let begin = names.iter().position(|name| name == "begin").unwrap();
-    let begins = draws.pooled(begin);
-    let share = |within: &dyn Fn(f64) -> bool| {
-        let count = begins.iter().filter(|b| within(**b)).count();
-        count as f64 / begins.len() as f64
-    };
+    let begins = begins(&runs[1]);
     Findings {
         case,
         values: model.event.velocity.len(),
-        early: share(&|begin| begin < MIDDLE),
-        between: share(&|begin| (begin - MIDDLE).abs() < APART),
+        early: share(&begins, |begin| begin < MIDDLE),
+        between: share(&begins, |begin| (begin - MIDDLE).abs() < APART),
         warned: runs.iter().filter(|r| !r.warnings.is_empty()).count(),
         seconds: [runs[0].cost.seconds, importance[0].cost.seconds, bridged],
         smc: evidences(runs),
@@ -301,6 +293,18 @@ fn explore(case: Case) -> Findings {
         bridge,
         chains: (chains.evidence.unwrap(), !chains.warnings.is_empty()),
     }
+}
+
+/// Where the patch begins, draw by draw.
+fn begins(run: &Inference) -> Vec<f64> {
+    let draws = run.draws.as_ref().unwrap();
+    let begin = draws.names().iter().position(|name| name == "begin");
+    draws.pooled(begin.unwrap())
+}
+
+fn share(begins: &[f64], within: impl Fn(f64) -> bool) -> f64 {
+    let count = begins.iter().filter(|b| within(**b)).count();
+    count as f64 / begins.len() as f64
 }
 
 fn evidences(runs: Vec<Inference>) -> Vec<Evidence> {

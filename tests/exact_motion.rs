@@ -522,10 +522,10 @@ fn a_bottleneck_of_the_speed_is_passed() {
     assert!(worst.lifts > 1, "{piece:?} {drag:?}");
 }
 
-/// A law that has itself integrated, whether or not that is needed.
-struct Integrated<'a>(&'a Drag);
+/// A law that has forces fitted to it, whether or not that is needed.
+struct Fitted<'a>(&'a Drag);
 
-impl Friction<Plain> for Integrated<'_> {
+impl Friction<Plain> for Fitted<'_> {
     fn varies(&self) -> Varies {
         Varies::WithSpeed
     }
@@ -535,9 +535,9 @@ impl Friction<Plain> for Integrated<'_> {
 }
 
 #[test]
-fn integrated_laws_move_as_exact_ones_do() {
-    // Each leg errs by 1e-12 at most, and errors add up over a few hundred of them.
-    // Where a bend lifts the mass off, the force has a kink.
+fn fitted_laws_move_as_exact_ones_do() {
+    // Each leg errs by 1e-12 at most, and errors add up over a few hundred of
+    // them. Where a bend lifts the mass off, the force has a kink.
     let mut ends = 0;
     for case in 0..300 {
         let mut rng = Seed::new(15).child(case).rng();
@@ -549,7 +549,7 @@ fn integrated_laws_move_as_exact_ones_do() {
         let times = times(&mut rng, 40.0);
         let [mut one, mut other] = [Vec::new(), Vec::new()];
         sample(&path, &drag, release, &times, false, |s| one.push(s)).unwrap();
-        let law = Integrated(&drag);
+        let law = Fitted(&drag);
         sample(&path, &law, release, &times, false, |s| other.push(s))
             .unwrap();
         let mut worst = 0.0_f64;

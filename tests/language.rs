@@ -13,8 +13,8 @@ use couloir::prior::{Gamma, InverseGamma, Normal, Prior, Support, Uniform};
 use couloir::scalar::Kind;
 use couloir::seed::Rng;
 use couloir::{
-    Event, Label, Model, Number, Outcome, Program, Real, Run, Seed, Series,
-    model,
+    Declared, Event, Label, Model, Number, Outcome, Program, Real, Run, Seed,
+    Series, Stop, model,
 };
 
 /// After a change of words, write them anew with
@@ -105,10 +105,42 @@ model! {
 /// [`Whole`] by hand.
 struct Twin(Whole);
 
+fn one(name: &str) -> Label<'_> {
+    Label::new(name, "1")
+}
+
+/// The block `sum`.
+fn summed<'r, K: Number>(
+    run: &mut Run<'r, K>,
+    spread: Real<K>,
+) -> Result<Declared<'r, K, Sums<Real<K>>>, Stop> {
+    let mu = run.scalar(one("sum.mu"), Gamma::new(90.0, 0.003))?;
+    let label = Label::new("xi", "m/s2");
+    let xi = run.scalar(label, Gamma::new(25.0, 40.0))?;
+    let cohesion = Cohesion { cohesion: 0.1 * spread };
+    let sum = Sum::new(Coulomb { mu }, Turbulent { xi });
+    Ok(run.declare(Sum::new(sum, cohesion)))
+}
+
+type Sums<S> = Sum<Sum<Coulomb<S>, Turbulent<S>>, Cohesion<S>>;
+
+/// The block `errors`.
+fn errors<'r, K: Number>(
+    run: &mut Run<'r, K>,
+) -> Result<Declared<'r, K, Ar<Real<K>>>, Stop> {
+    let label = one("errors.phi");
+    let phi = [
+        run.scalar(label.at(0), Uniform::new(-0.9, 0.9))?,
+        run.scalar(label.at(1), Normal::new(0.0, 0.1))?,
+    ];
+    let label = Label::new("sigma2", Ar::<Real<K>>::unit("sigma2"));
+    let sigma2 = run.scalar(label, InverseGamma::new(3.0, 20.0))?;
+    Ok(run.declare(Ar { phi: phi.into_iter().collect(), sigma2 }))
+}
+
 impl Program for Twin {
     fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
         let Whole { event, events, runout, n } = &self.0;
-        let one = |name| Label::new(name, "1");
         let centre = run.scalar(one("centre"), Normal::new(0.3, 0.02))?;
         let spread = run.scalar(one("spread"), Gamma::new(20.0, 0.001))?;
         let standard = Normal::<K>::new(0.0, 1.0);
@@ -122,36 +154,20 @@ impl Program for Twin {
         let around = Normal::new(centre, spread);
         let mu = run.scalar(one("friction.mu"), around)?;
         let friction = run.declare(Voellmy { mu, xi: drag });
-        let mu = run.scalar(one("sum.mu"), Gamma::new(90.0, 0.003))?;
-        let label = Label::new("xi", "m/s2");
-        let xi = run.scalar(label, Gamma::new(25.0, 40.0))?;
-        let cohesion = Cohesion { cohesion: 0.1 * spread };
-        let sum = Sum::new(Coulomb { mu }, Turbulent { xi });
-        let sum = run.declare(Sum::new(sum, cohesion));
-        let mut own = Vec::new();
-        for shift in shift {
-            let mu = centre + spread * shift;
-            own.push(run.declare(Coulomb { mu }));
-        }
+        let sum = summed(run, spread)?;
+        let own = shift.iter().map(|shift| centre + spread * shift);
+        let own: Vec<_> = own.map(|mu| run.declare(Coulomb { mu })).collect();
         let mut each = Vec::new();
         for i in 0..*n {
             let mu = run.scalar(one("each.mu").at(i), around)?;
             each.push(run.declare(Voellmy { mu, xi: 900.0.into() }));
         }
-        let label = one("errors.phi");
-        let phi = [
-            run.scalar(label.at(0), Uniform::new(-0.9, 0.9))?,
-            run.scalar(label.at(1), Normal::new(0.0, 0.1))?,
-        ];
-        let label = Label::new("sigma2", Ar::<Real<K>>::unit("sigma2"));
-        let sigma2 = run.scalar(label, InverseGamma::new(3.0, 20.0))?;
-        let errors =
-            run.declare(Ar { phi: phi.into_iter().collect(), sigma2 });
+        let errors = errors(run)?;
         let half = Uniform::<K>::new(-0.5, 0.5);
         let phi = run.vector(one("more.phi"), *n, half)?;
         let more = run.declare(Ar { phi, sigma2: Real::new(2.0) });
-        let phi = [Real::new(0.1), 0.1 * centre];
-        let known = run.declare(Ar { phi: phi.into_iter().collect(), sigma2 });
+        let phi = [Real::new(0.1), 0.1 * centre].into_iter().collect();
+        let known = run.declare(Ar { phi, sigma2: errors.sigma2 });
 
         let flow = event.slide(&friction)?;
         run.observe(&event.velocity, flow.velocity(), &errors)?;

@@ -377,7 +377,9 @@ impl Writer<'_> {
             };
             self.scalar(&label, prior)
         });
-        collected(&quote!([#(#values),*].into_iter()))
+        let at =
+            priors.first().map_or_else(Span::call_site, |p| p.path.span());
+        self.collected(at, &quote!([#(#values),*].into_iter()))
     }
 
     /// A known value: a number, or a list of numbers.
@@ -392,16 +394,34 @@ impl Writer<'_> {
         match value {
             Expr::Array(list) => {
                 let values = list.elems.iter().map(number);
-                collected(&quote!([#(#values),*].into_iter()))
+                self.collected(
+                    list.span(),
+                    &quote!([#(#values),*].into_iter()),
+                )
             }
             Expr::Repeat(list) => {
                 let (one, length) = (number(&list.expr), &list.len);
-                collected(&quote!(::core::iter::repeat_n(#one, #length)))
+                self.collected(
+                    list.span(),
+                    &quote!(::core::iter::repeat_n(#one, #length)),
+                )
             }
             one => {
                 let at = Span::mixed_site().located_at(one.span());
-                quote_spanned!(at=> ::core::convert::Into::into(#one))
+                quote_spanned!(at=> ::couloir::block::Fills::fill(#one))
             }
+        }
+    }
+
+    /// A list field of some values, for which the compiler is to point to
+    /// `span`.
+    fn collected(&self, span: Span, values: &TokenStream) -> TokenStream {
+        let kind = self.kind;
+        let at = Span::mixed_site().located_at(span);
+        quote_spanned! {at=>
+            ::couloir::block::ManyNumbers::<::couloir::Real<#kind>>::of(
+                #values
+            )
         }
     }
 
@@ -478,10 +498,6 @@ fn each(index: &Ident, range: &Expr, value: &TokenStream) -> TokenStream {
         }
         all
     }}
-}
-
-fn collected(values: &TokenStream) -> TokenStream {
-    quote!(#values.collect())
 }
 
 /// `{ inside }` at the user's braces.

@@ -91,6 +91,7 @@ use errors::Errors;
 /// | a missing `;` or `,` | put it where the message points |
 /// | `data ~ flow.velocity();` | `.. + errors`, or a distribution |
 /// | `data ~ errors + flow.velocity();` | the noise comes last |
+/// | `friction ~ Own { .. }` with `struct Own { mu: f64 }` | `struct Own<S> { mu: S }`: a block is generic |
 /// | no struct, two, generic, without names | `pub struct Name { event: Event }` |
 /// | no likelihood, two, or one without `~` | `likelihood { data ~ prediction + noise; }` |
 ///

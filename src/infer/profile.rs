@@ -1,13 +1,13 @@
 //! Profiles along coordinates: where a posterior is not as its peak looks.
 //!
-//! A normal approximation knows a peak's curvature and no more. A tail that is
-//! bent, one-sided, or flat beyond some place, as that of a patch whose
-//! friction can vanish but not fall below zero, holds as much as the peak and
-//! none of its draws go there; importance weights cannot tell of places that
-//! they have never seen. The profile along every coordinate does: strides
-//! along it, with all other coordinates at their best, show where the
-//! posterior lies above the approximation, and each such place becomes a
-//! component (profiles as a check of normality: Bates, Watts 1988, chapter 6).
+//! A normal approximation knows a peak's curvature and no more. A tail may be
+//! bent, one-sided, or flat beyond some place: a patch's friction can vanish,
+//! but not fall below zero. Such a tail can hold as much as the peak, and no
+//! draw of the approximation gets there; importance weights do not tell of
+//! places without draws. Profiles do: strides along each coordinate, with all
+//! others at their best, show where the posterior lies above the
+//! approximation, and each such place becomes a component (profiles as a check
+//! of normality: Bates and Watts 1988, chapter 6).
 
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -25,10 +25,10 @@ const DOWN: f64 = 6.5;
 /// The most strides, and the most steps of a climb after each.
 const STRIDES: usize = 9;
 const FEW: usize = 4;
-/// How much above the normal approximation, in ln, a place becomes a
+/// How far above the normal approximation, in ln, a place becomes a
 /// component.
 const ABOVE: f64 = 0.4;
-/// How much above the highest peak, in ln, a place is another peak's.
+/// How far above the highest peak, in ln, a place belongs to another peak.
 const HIGHER: f64 = 0.3;
 
 /// What profiles meet.
@@ -40,8 +40,8 @@ pub(super) struct Met {
     pub(super) higher: Option<Peak>,
 }
 
-/// What profiles from the highest peaks meet, along all coordinates
-/// both ways but some that places were looked at along.
+/// What profiles from the highest peaks meet, both ways along every
+/// coordinate, except those left out.
 ///
 /// # Errors
 /// What no other parameter values would mend.
@@ -78,12 +78,12 @@ struct Profile<'a> {
     along: usize,
     /// The peak's width along it.
     width: f64,
-    /// The first stride: the others follow as they do in the approximation.
+    /// The first stride: other coordinates go along as in the approximation.
     stride: DVector<f64>,
 }
 
 impl<'a> Profile<'a> {
-    /// Those along every coordinate, up and down.
+    /// The profiles along every coordinate, up and down.
     fn all(peak: &'a Peak) -> Vec<Self> {
         let Some(factor) = peak.precision.clone().cholesky() else {
             return Vec::new();
@@ -98,8 +98,8 @@ impl<'a> Profile<'a> {
         .collect()
     }
 
-    /// Goes on as long as the profile stays high, each stride begun in the
-    /// direction of the last.
+    /// Strides along the profile for as long as it stays high, each begun in
+    /// the direction of the last.
     fn walked(self, posterior: &Posterior<'_>) -> Result<Met> {
         let held = [self.along];
         let spacing = [STRIDE * self.width];

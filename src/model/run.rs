@@ -300,15 +300,27 @@ impl<'r, K: Kind> Run<'r, K> {
             ))));
         }
         noise.check(series.grid())?;
+        if let Some(change) = self.setting.change {
+            return self.observe_under(change, series, prediction, noise);
+        }
         let mut residuals = self.context.buffer();
-        let Some(change) = self.setting.change else {
-            let mut values = series.values().iter();
-            prediction.predict(series, |predicted| {
-                let value = values.next().copied().unwrap_or(f64::NAN);
-                residuals.push(value - predicted);
-            })?;
-            return self.score_wide(series, &residuals, noise);
-        };
+        let mut values = series.values().iter();
+        prediction.predict(series, |predicted| {
+            let value = values.next().copied().unwrap_or(f64::NAN);
+            residuals.push(value - predicted);
+        })?;
+        self.score_wide(series, &residuals, noise)
+    }
+
+    /// The same under a change of what is read off and of the errors.
+    fn observe_under<N: Noise<K>>(
+        &mut self,
+        change: &Change<K>,
+        series: &Series,
+        prediction: impl Prediction<K>,
+        noise: &N,
+    ) -> Outcome {
+        let mut residuals = self.context.buffer();
         let mut covariate = self.context.buffer();
         let mut recorded = series.times().iter().zip(series.values());
         prediction.predict(series, |predicted| {

@@ -11,10 +11,10 @@
     reason = "loops over an index become vectors, chains of iterators do not"
 )]
 
-use super::eight::{EIGHT, Eight, atanhc, expc};
+use super::eight::{EIGHT, Eight, atanhc};
 use super::exact::{FAR, Force, Pace};
 use super::resistance::Even;
-use super::slopes::{Slopes, Solved};
+use super::slopes::{Pieces, Slopes, Solved};
 use super::track::Columns;
 use crate::scalar::{Kind, Plain, Real};
 
@@ -73,56 +73,41 @@ impl Ahead {
         even: &Even<Plain>,
     ) {
         (self.first, self.whole) = (first, 0);
-        let Some([pull, load, length]) = columns.eight(first) else { return };
-        let [along, across, constant, c] =
-            [even.along, even.across, even.constant, even.c].map(Real::value);
-        let (mut x, mut a) = ([0.0; EIGHT], [0.0; EIGHT]);
-        for i in 0..EIGHT {
-            x[i] = c * length[i] * 2.0;
-            a[i] = along * pull[i] - across * load[i] - constant;
-        }
-        let sloped = K::DIFFERENTIATES;
-        let (mut spread, mut spread_c) = expc(&x, sloped);
-        let (mut decay, mut gain) = ([0.0; EIGHT], [0.0; EIGHT]);
-        for i in 0..EIGHT {
-            spread[i] = spread[i] * length[i] * 2.0;
-            spread_c[i] = spread_c[i] * length[i] * length[i] * 4.0;
-            decay[i] = 1.0 - c * spread[i];
-            gain[i] = a[i] * spread[i];
-        }
-        let (mut before, mut entered) = (w, [w; EIGHT]);
-        for i in 0..EIGHT {
-            entered[i] = before;
-            before = before * decay[i] + gain[i];
-            self.w[i] = before;
-        }
+        let Some(rows) = columns.eight(first) else { return };
+        let pieces = Pieces::new(rows, even, K::DIFFERENTIATES);
+        let Pieces { a, c, spread, decay, .. } = &pieces;
+        let entered = self.set_squares(w, &pieces);
         let speeds = self.set_speeds(u);
         let (mut q, mut z) = ([0.0; EIGHT], [0.0; EIGHT]);
         for i in 0..EIGHT {
             q[i] = spread[i] / (speeds[i + 1] + speeds[i] * decay[i]);
             z[i] = a[i] * c * q[i] * q[i];
         }
-        let (slowed, bent) = atanhc(&z, sloped);
+        let (slowed, bent) = atanhc(&z, K::DIFFERENTIATES);
         for i in 0..EIGHT {
             self.after[i] = q[i] * slowed[i];
         }
-        self.whole = self.leading(&x);
-        if sloped {
-            let length = *length;
-            self.slopes.set(&Solved {
-                length,
-                a,
-                c,
-                spread,
-                spread_c,
-                decay,
-                entered,
-                speeds,
-                q,
-                z,
-                bent,
-            });
+        self.whole = self.leading(&pieces.x);
+        if K::DIFFERENTIATES {
+            let pieces = &pieces;
+            self.slopes.set(&Solved { pieces, entered, speeds, q, z, bent });
         }
+    }
+
+    /// The squared speeds at the far borders; those on entering.
+    #[inline(always)]
+    fn set_squares(&mut self, w: f64, pieces: &Pieces) -> Eight {
+        let mut gain = [0.0; EIGHT];
+        for i in 0..EIGHT {
+            gain[i] = pieces.a[i] * pieces.spread[i];
+        }
+        let (mut before, mut entered) = (w, [w; EIGHT]);
+        for i in 0..EIGHT {
+            entered[i] = before;
+            before = before * pieces.decay[i] + gain[i];
+            self.w[i] = before;
+        }
+        entered
     }
 
     /// The speeds at all nine borders.

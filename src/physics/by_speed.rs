@@ -120,6 +120,11 @@ impl<'a, K: Kind, L: Friction<K>> SpeedWalker<'a, K, L> {
         while self.range > LEAST_RANGE && self.trials < MAX_TRIALS {
             self.trials += 1;
             let leg = self.leg(&site, push, length, to);
+            if leg.fitted.jumps()
+                && let Some((leg, length)) = self.over_jump(&leg, push, left)
+            {
+                return self.take(leg, length);
+            }
             self.decay = leg.nearest.force.c;
             let ends_beside = leg.ends_beside(to);
             if ends_beside && is_guess && leg.arrival() >= 0.0 {
@@ -175,6 +180,24 @@ impl<'a, K: Kind, L: Friction<K>> SpeedWalker<'a, K, L> {
             *arrival = Pace::new(arrival.u + nearest.further(beyond));
         }
         Leg { fitted, nearest, end }
+    }
+
+    /// A leg over a jump of the law, with its length: to a speed beyond it,
+    /// and not to a place, so that the mass is at the jump when it has that
+    /// speed, whatever the parameters are. `None` where it does not get there.
+    #[cold]
+    fn over_jump(
+        &self,
+        leg: &Leg<K>,
+        push: Real<K>,
+        left: Real<K>,
+    ) -> Option<(Leg<K>, Real<K>)> {
+        let to = Real::new(leg.fitted.to().value());
+        let after = (to - self.pace.u) / push;
+        let length = (to + self.pace.u) * after * 0.5;
+        let end = End::Leaves { arrival: Pace::new(to), after };
+        let gets_there = after.value() > 0.0 && length < left;
+        gets_there.then_some((Leg { end, ..*leg }, length))
     }
 
     /// Whether a leg is good enough; how wide the next one may be.

@@ -20,6 +20,10 @@ const INNER: f64 = 3.0 / 7.0;
 /// lost in the round-off of the values.
 const NARROW: f64 = 2e-7;
 
+/// From which difference \[m/s2\] between the ends of a narrow range on a law
+/// jumps in it.
+const JUMP: f64 = 1e-3;
+
 /// A polynomial for a force \[m/s2\] over speeds \[m/s\].
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fitted<K: Kind> {
@@ -49,7 +53,8 @@ impl<K: Kind> Fitted<K> {
         force: impl Fn(Real<K>) -> Real<K>,
     ) -> Self {
         let narrow = (to - from).value().abs() < NARROW * from.value();
-        let to = if narrow { from * (1.0 + NARROW) } else { to };
+        let way = NARROW.copysign((to - from).value());
+        let to = if narrow { from * (1.0 + way) } else { to };
         let (middle, half) = ((from + to) * 0.5, (to - from) * 0.5);
         let inner = half * INNER.sqrt();
         let [low, centre] = [middle - inner, middle].map(&force);
@@ -70,8 +75,16 @@ impl<K: Kind> Fitted<K> {
     }
 
     /// Whether it is as narrow as a range may be.
+    #[inline(always)]
     pub(super) fn is_narrow(&self) -> bool {
         self.width() <= 2.0 * NARROW * self.middle.value()
+    }
+
+    /// Whether the law jumps in a range as narrow as this one.
+    #[inline(always)]
+    pub(super) fn jumps(&self) -> bool {
+        let [_, c1, _, c3, _] = self.c;
+        self.is_narrow() && 2.0 * (c1 + c3).value().abs() > JUMP
     }
 
     /// How wide the range is \[m/s\].

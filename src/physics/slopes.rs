@@ -13,19 +13,54 @@
     reason = "loops over an index become vectors, chains of iterators do not"
 )]
 
-use super::eight::{EIGHT, Eight};
+use super::eight::{EIGHT, Eight, expc};
 use super::exact::{Force, Pace};
-use crate::scalar::{Kind, Real};
+use super::resistance::Even;
+use crate::scalar::{Kind, Plain, Real};
 
-/// What eight crossings were worked out from.
-pub(super) struct Solved {
+/// What eight pieces do to any speed.
+pub(super) struct Pieces {
     pub(super) length: Eight,
+    /// The force a - c u^2, and 2 c l.
     pub(super) a: Eight,
     pub(super) c: f64,
+    pub(super) x: Eight,
     /// E and its derivative by c, and e.
     pub(super) spread: Eight,
     pub(super) spread_c: Eight,
     pub(super) decay: Eight,
+}
+
+impl Pieces {
+    /// From pull, load and length; `sloped` says whether derivatives are
+    /// asked for.
+    #[inline(always)]
+    pub(super) fn new(
+        [pull, load, length]: [&Eight; 3],
+        even: &Even<Plain>,
+        sloped: bool,
+    ) -> Self {
+        let [along, across, constant, c] =
+            [even.along, even.across, even.constant, even.c].map(Real::value);
+        let (mut x, mut a) = ([0.0; EIGHT], [0.0; EIGHT]);
+        for i in 0..EIGHT {
+            x[i] = c * length[i] * 2.0;
+            a[i] = along * pull[i] - across * load[i] - constant;
+        }
+        let (mut spread, mut spread_c) = expc(&x, sloped);
+        let mut decay = [0.0; EIGHT];
+        for i in 0..EIGHT {
+            spread[i] = spread[i] * length[i] * 2.0;
+            spread_c[i] = spread_c[i] * length[i] * length[i] * 4.0;
+            decay[i] = 1.0 - c * spread[i];
+        }
+        Self { length: *length, a, c, x, spread, spread_c, decay }
+    }
+}
+
+/// What eight crossings were worked out from.
+pub(super) struct Solved<'a> {
+    pub(super) pieces: &'a Pieces,
     /// Squared speeds on entering, and the speeds at all nine borders.
     pub(super) entered: Eight,
     pub(super) speeds: [f64; EIGHT + 1],
@@ -53,22 +88,22 @@ pub(super) struct Slopes {
 
 impl Slopes {
     #[inline(always)]
-    pub(super) fn set(&mut self, of: &Solved) {
-        let c = of.c;
+    pub(super) fn set(&mut self, of: &Solved<'_>) {
+        let Pieces { length, a, c, spread, spread_c, decay, .. } = of.pieces;
         for i in 0..EIGHT {
-            let (a, q, decay) = (of.a[i], of.q[i], of.decay[i]);
-            let lost = 2.0 * of.length[i] * decay;
-            let part = q / (of.spread[i] * (1.0 - of.z[i]));
+            let q = of.q[i];
+            let lost = 2.0 * length[i] * decay[i];
+            let part = q / (spread[i] * (1.0 - of.z[i]));
             let swift = q * q * q * of.bent[i];
-            self.w_w[i] = decay;
-            self.w_a[i] = of.spread[i];
-            self.w_c[i] = a * of.spread_c[i] - lost * of.entered[i];
+            self.w_w[i] = decay[i];
+            self.w_a[i] = spread[i];
+            self.w_c[i] = a[i] * spread_c[i] - lost * of.entered[i];
             self.u_w[i] = 0.5 / of.speeds[i + 1];
             self.t_w[i] = -q * part * self.u_w[i];
-            self.t_u[i] = -q * part * decay;
+            self.t_u[i] = -q * part * decay[i];
             self.t_a[i] = swift * c;
             self.t_c[i] =
-                part * (of.spread_c[i] + q * of.speeds[i] * lost) + swift * a;
+                part * (spread_c[i] + q * of.speeds[i] * lost) + swift * a[i];
         }
     }
 

@@ -271,27 +271,35 @@ pub(super) fn reading(
         })
         .collect::<Result<Vec<_>>>()?;
     let found: Vec<_> = found.into_iter().flatten().collect();
-    let (samples, left_out) = (found.len(), samples - found.len());
-    let covered = [0, 1].map(|m| {
-        let truth = Which::BOTH[m].truth(TRUTH);
-        let holds = |i: usize| {
-            let hit = |f: &&[Inference; 2]| f[m].marginals[i].covers(truth[i]);
-            found.iter().filter(hit).count()
-        };
-        (0..truth.len()).map(holds).collect()
-    });
-    let width_mu = [0, 1].map(|m| {
-        let width = |f: &[Inference; 2]| {
-            let q = f[m].marginals[0].quantiles;
-            q[5] - q[1]
-        };
-        found.iter().map(width).sum::<f64>() / samples.max(1) as f64
-    });
     let log10_bf = found
         .iter()
         .map(|[m0, m1]| (evidence(m1) - evidence(m0)) / f64::ln(10.0))
         .collect();
-    Ok(Reading { what, samples, left_out, covered, width_mu, log10_bf })
+    Ok(Reading {
+        what,
+        samples: found.len(),
+        left_out: samples - found.len(),
+        covered: Which::BOTH.map(|which| covered(which, &found)),
+        width_mu: [0, 1].map(|m| width_mu(found.iter().map(|f| &f[m]))),
+        log10_bf,
+    })
+}
+
+/// How many of the 90 % intervals under a model hold the truth, by parameter.
+fn covered(which: Which, found: &[[Inference; 2]]) -> Vec<usize> {
+    let truth = which.truth(TRUTH);
+    let hits = |(i, truth): (usize, &f64)| {
+        let marginals = found.iter().map(|f| &f[which as usize].marginals[i]);
+        marginals.filter(|marginal| marginal.covers(*truth)).count()
+    };
+    truth.iter().enumerate().map(hits).collect()
+}
+
+/// The mean width of mu's 90 % interval.
+fn width_mu<'f>(found: impl ExactSizeIterator<Item = &'f Inference>) -> f64 {
+    let count = found.len().max(1) as f64;
+    let quantiles = found.map(|f| &f.marginals[0].quantiles);
+    quantiles.map(|q| q[5] - q[1]).sum::<f64>() / count
 }
 
 #[cfg(test)]

@@ -21,8 +21,6 @@ pub trait Kind: Copy + Debug + Default + Send + Sync + 'static {
     fn constant(value: f64) -> Self::Repr;
     /// A number that is the coordinate along `direction`.
     fn variable(value: f64, direction: usize) -> Self::Repr;
-    /// A number of given value and partial derivatives.
-    fn assemble(value: f64, partial: impl Fn(usize) -> f64) -> Self::Repr;
     /// The value of a number.
     fn value(x: &Self::Repr) -> f64;
     /// Its derivative along `direction`; 0 outside the kind's directions.
@@ -70,10 +68,6 @@ impl Kind for Plain {
     }
     #[inline(always)]
     fn variable(value: f64, _: usize) -> f64 {
-        value
-    }
-    #[inline(always)]
-    fn assemble(value: f64, _: impl Fn(usize) -> f64) -> f64 {
         value
     }
     #[inline(always)]
@@ -125,10 +119,6 @@ impl<const N: usize> Kind for Grad<N> {
             *slot = 1.0;
         }
         Dual { value, partials }
-    }
-    #[inline(always)]
-    fn assemble(value: f64, partial: impl Fn(usize) -> f64) -> Dual<N> {
-        Dual { value, partials: std::array::from_fn(partial) }
     }
     #[inline(always)]
     fn value(x: &Dual<N>) -> f64 {

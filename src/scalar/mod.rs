@@ -221,34 +221,13 @@ impl<K: Kind> Real<K> {
     pub fn is_constant(self) -> bool {
         K::is_constant(&self.0)
     }
-
-    /// The derivatives that the number carries with it; none for kinds that
-    /// carry none.
-    #[inline(always)]
-    pub(crate) fn carried(self, direction: usize) -> f64 {
-        K::partial(&self.0, direction)
-    }
-
-    /// A number that carries given derivatives, of kinds that can.
-    #[inline(always)]
-    pub(crate) fn carrying(
-        value: f64,
-        partial: impl Fn(usize) -> f64,
-    ) -> Self {
-        Self(K::assemble(value, partial))
-    }
 }
 
 impl<K: Forward> Real<K> {
-    /// A number of given value and partial derivatives.
-    pub fn assemble(value: f64, partial: impl Fn(usize) -> f64) -> Self {
-        Self::carrying(value, partial)
-    }
-
     /// The derivative along `direction`.
     #[inline(always)]
     pub fn partial(self, direction: usize) -> f64 {
-        self.carried(direction)
+        K::partial(&self.0, direction)
     }
 
     /// Whether the value and all derivatives are finite.

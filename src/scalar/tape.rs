@@ -190,11 +190,6 @@ impl Kind for Reverse {
         })
     }
 
-    /// A tape does not know what the directions are: lost to it.
-    fn assemble(value: f64, _: impl Fn(usize) -> f64) -> Traced {
-        Traced::lost(value)
-    }
-
     #[inline(always)]
     fn value(x: &Traced) -> f64 {
         x.value

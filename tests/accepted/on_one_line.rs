@@ -1,4 +1,5 @@
-//! A likelihood on one line, without a warning; references to numbers.
+//! A likelihood on one line, without a warning; references to numbers, of
+//! unknowns and of data.
 #![deny(warnings)]
 use couloir::model;
 
@@ -7,7 +8,8 @@ model! {
 
     mean ~ Normal(0.0, 1.0);
     slope[2] ~ Normal(0.0, 1.0);
-    let steeper = slope.iter().map(|s| 2.0 * s).sum::<couloir::Real<_>>();
+    let ahead = slope.iter().zip(&[1.0, 2.0]).map(|(s, shift)| 2.0 * s - shift);
+    let steeper = ahead.sum::<couloir::Real<_>>();
     likelihood { for (y, x) in many.iter().zip(at) { y ~ Normal(mean + steeper * x, 1.0); } }
 }
 

@@ -114,9 +114,10 @@ pub(crate) fn all() -> Vec<Case> {
         .collect();
     cases.extend(TRACKS.iter().map(tracked));
     cases.extend(RECORDINGS.iter().map(recorded));
-    cases.extend(both());
-    cases.extend(large_or_binary());
-    cases.extend(paths());
+    cases.extend(MISFITS.iter().map(unfit));
+    cases.extend(odd_recordings());
+    cases.extend(odd_events());
+    cases.extend(ASKED.iter().map(asked));
     cases
 }
 
@@ -855,18 +856,16 @@ const LONG_CELL: &str = concat!(
     "xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx\n",
 );
 
-/// Cases in which two files do not fit each other.
-fn both() -> Vec<Case> {
-    let event = |from: &str, to: &str| EVENT.replacen(from, to, 1);
-    let track = TRACK.as_bytes();
-    vec![
-        case(
+/// What the event asks of a recording that cannot give it: what of event.toml
+/// is replaced by what, and the recording.
+type Misfit = (Edit, &'static str);
+
+const MISFITS: &[Misfit] = &[
+    (
+        (
             "start-given-twice",
-            [
-                event("velocity = 0.0", "velocity = 2").as_bytes(),
-                track,
-                b"t,velocity\n0,2\n1,4\n",
-            ],
+            "velocity = 0.0",
+            "velocity = 2",
             &[
                 "event.toml:14: recording.file: ",
                 "a value at t = 0",
@@ -874,206 +873,209 @@ fn both() -> Vec<Case> {
                 "drop one of them",
             ],
         ),
-        case(
+        "t,velocity\n0,2\n1,4\n",
+    ),
+    (
+        (
             "position-beyond-the-track",
-            [
-                event("\"velocity\"", "\"position\"").as_bytes(),
-                track,
-                b"t,position\n1,200\n2,500.5\n",
-            ],
+            "\"velocity\"",
+            "\"position\"",
             &[
                 "event.toml:14: recording.file: ",
                 "recording.csv: the recording covers 500.5 m",
                 "extend the track",
             ],
         ),
-        case(
+        "t,position\n1,200\n2,500.5\n",
+    ),
+    (
+        (
             "window-on-position",
-            [
-                event(
-                    "\"velocity\"\nwindow = 0.0",
-                    "\"position\"\nwindow = 2",
-                )
-                .as_bytes(),
-                track,
-                b"t,position\n1,200\n2,300\n",
-            ],
+            "\"velocity\"\nwindow = 0.0",
+            "\"position\"\nwindow = 2",
             &["event.toml:16: recording.window: ", "positions", "window = 0"],
         ),
-        case(
+        "t,position\n1,200\n2,300\n",
+    ),
+    (
+        (
             "ar-2-on-uneven-times",
-            [
-                event("iid", "ar(2)").as_bytes(),
-                track,
-                b"t,velocity\n1.013,2\n1.738,4\n3.117,5\n3.339,6\n4.904,6\n",
-            ],
+            "iid",
+            "ar(2)",
             &[
-                "event.toml:20: model.noise: ar(2) needs times on a regular grid",
+                "event.toml:20: model.noise: ar(2) needs times on a regular \
+                 grid",
                 "use ar(1), or iid",
             ],
         ),
-    ]
+        "t,velocity\n1.013,2\n1.738,4\n3.117,5\n3.339,6\n4.904,6\n",
+    ),
+];
+
+fn unfit(((name, from, to, expected), recording): &Misfit) -> Case {
+    let event = EVENT.replacen(from, to, 1);
+    let files = [event.as_bytes(), TRACK.as_bytes(), recording.as_bytes()];
+    case(name, files, expected)
 }
 
-/// Cases whose bytes no editor would write.
-fn large_or_binary() -> Vec<Case> {
+/// Recordings whose bytes no editor would write.
+const ODD_RECORDINGS: &[(&str, &[u8], Expected)] = &[
+    (
+        "recording-zeros",
+        &[0; 300],
+        &["recording.csv:1: the line has control characters"],
+    ),
+    (
+        "recording-not-utf-8",
+        b"t,velocity\n1,2\n2,5\xb1\n",
+        &["recording.csv:3: the line is not UTF-8 text"],
+    ),
+    (
+        "recording-utf-16",
+        b"\xff\xfet\0,\0v\0\n\0",
+        &["recording.csv:1: the line is not UTF-8 text"],
+    ),
+    (
+        "recording-one-endless-line",
+        &[b'7'; 100_000],
+        &["recording.csv:1: the line is over 1000 bytes long"],
+    ),
+    (
+        "recording-old-mac-lines",
+        b"t,velocity\r1,2\r",
+        &["recording.csv:1: the line has control characters", "\\r"],
+    ),
+];
+
+/// These, and some that are written here.
+fn odd_recordings() -> Vec<Case> {
     let rows: String = std::iter::once("t,velocity\n".to_owned())
         .chain((1..=1_000_001).map(|i| format!("{i},0\n")))
         .collect();
-    let (event, track) = (EVENT.as_bytes(), TRACK.as_bytes());
+    let too_many: Expected = &[
+        "recording.csv:1000002: there are more than 1000000 rows",
+        "thin them out",
+    ];
+    let binary: Expected = &["recording.csv:1: the line", "UTF-8"];
+    let garbage = garbage();
+    let written = [
+        ("too-many-rows", rows.as_bytes(), too_many),
+        ("recording-binary", &garbage, binary),
+    ];
+    let all = written.iter().chain(ODD_RECORDINGS);
+    all.map(|(name, recording, expected)| {
+        let files = [EVENT.as_bytes(), TRACK.as_bytes(), recording];
+        case(name, files, expected)
+    })
+    .collect()
+}
+
+/// No text at all.
+fn garbage() -> Vec<u8> {
+    (0..5000_u32).map(|i| (i * i % 251) as u8 | 0x80).collect()
+}
+
+/// Other files that are too large, or whose bytes no editor would write.
+fn odd_events() -> Vec<Case> {
     let recording = RECORDING.as_bytes();
-    let garbage: Vec<u8> =
-        (0..5000_u32).map(|i| (i * i % 251) as u8 | 0x80).collect();
+    let odd = |name, event: &[u8], expected| {
+        case(name, [event, TRACK.as_bytes(), recording], expected)
+    };
     let nested = [&b"a = "[..], &[b'['; 100_000][..]].concat();
     let comments = "# nothing\n".repeat(110_000) + EVENT;
     vec![
         case(
-            "too-many-rows",
-            [event, track, rows.as_bytes()],
-            &[
-                "recording.csv:1000002: there are more than 1000000 rows",
-                "thin them out",
-            ],
-        ),
-        case(
-            "recording-binary",
-            [event, track, &garbage],
-            &["recording.csv:1: the line", "UTF-8"],
-        ),
-        case(
-            "recording-zeros",
-            [event, track, &[0; 300]],
-            &["recording.csv:1: the line has control characters"],
-        ),
-        case(
-            "recording-not-utf-8",
-            [event, track, b"t,velocity\n1,2\n2,5\xb1\n"],
-            &["recording.csv:3: the line is not UTF-8 text"],
-        ),
-        case(
-            "recording-utf-16",
-            [event, track, b"\xff\xfet\0,\0v\0\n\0"],
-            &["recording.csv:1: the line is not UTF-8 text"],
-        ),
-        case(
-            "recording-one-endless-line",
-            [event, track, &[b'7'; 100_000]],
-            &["recording.csv:1: the line is over 1000 bytes long"],
-        ),
-        case(
-            "recording-old-mac-lines",
-            [event, track, b"t,velocity\r1,2\r"],
-            &["recording.csv:1: the line has control characters", "\\r"],
-        ),
-        case(
             "track-binary",
-            [event, &garbage, recording],
+            [EVENT.as_bytes(), &garbage(), recording],
             &["track.csv:1: the line"],
         ),
-        case(
+        odd(
             "event-not-utf-8",
-            [b"name = \"a\"\n# \xff\n", track, recording],
+            b"name = \"a\"\n# \xff\n",
             &["event.toml:2: is not UTF-8 text"],
         ),
-        case(
-            "event-binary",
-            [&garbage, track, recording],
-            &["event.toml:1: is not UTF-8 text"],
-        ),
-        case(
+        odd("event-binary", &garbage(), &["event.toml:1: is not UTF-8 text"]),
+        odd(
             "event-empty",
-            [b"", track, recording],
+            b"",
             &["event.toml: track.file is missing", "write a line [track]"],
         ),
-        case(
+        odd(
             "event-too-large",
-            [comments.as_bytes(), track, recording],
+            comments.as_bytes(),
             &["event.toml: has more than 1048576 bytes"],
         ),
-        case(
-            "event-deeply-nested",
-            [&nested, track, recording],
-            &["event.toml:1: is not TOML"],
-        ),
+        odd("event-deeply-nested", &nested, &["event.toml:1: is not TOML"]),
     ]
 }
 
-/// Cases of what is asked for.
-fn paths() -> Vec<Case> {
-    let asked = |name, ask, files: &[(&'static str, &str)], expected| Case {
-        name,
-        files: files
-            .iter()
-            .map(|(n, t)| (*n, t.as_bytes().to_vec()))
-            .collect(),
-        ask,
-        expected,
-    };
-    vec![
-        asked(
-            "no-such-folder",
-            "nowhere",
-            &[],
-            &[
-                "nowhere: does not exist",
-                "expected an event folder",
-                "couloir new",
-            ],
-        ),
-        asked(
-            "no-such-file",
-            "nowhere/event.toml",
-            &[],
-            &["nowhere/event.toml: does not exist"],
-        ),
-        asked(
-            "no-event-in-folder",
-            "",
-            &[("track.csv", TRACK)],
-            &["no-event-in-folder: has no event.toml in it", "couloir new"],
-        ),
-        asked(
-            "event-is-a-folder",
-            "",
-            &[("event.toml/", "")],
-            &["event.toml: is a folder; expected a file"],
-        ),
-        asked(
-            "data-file-for-event",
-            "recording.csv",
-            &[("recording.csv", RECORDING)],
-            &["recording.csv: is a data file", "expected an event folder"],
-        ),
-        asked(
-            "no-track-file",
-            "",
-            &[("event.toml", EVENT), ("recording.csv", RECORDING)],
-            &["event.toml:4: track.file: ", "track.csv: does not exist"],
-        ),
-        asked(
-            "no-recording-file",
-            "",
-            &[("event.toml", EVENT), ("track.csv", TRACK)],
-            &[
-                "event.toml:14: recording.file: ",
-                "recording.csv: does not exist",
-            ],
-        ),
-        asked(
-            "recording-is-a-folder",
-            "event.toml",
-            &[
-                ("event.toml", EVENT),
-                ("track.csv", TRACK),
-                ("recording.csv/", ""),
-            ],
-            &["event.toml:14: recording.file: ", "recording.csv: is a folder"],
-        ),
-        asked(
-            "newline-in-the-path",
-            "a\nb",
-            &[],
-            &["a\\nb\": does not exist"],
-        ),
-    ]
+/// What is asked for: name, what is loaded, the files there are, and what the
+/// message has to contain.
+type Asked = (
+    &'static str,
+    &'static str,
+    &'static [(&'static str, &'static str)],
+    Expected,
+);
+
+const ASKED: &[Asked] = &[
+    (
+        "no-such-folder",
+        "nowhere",
+        &[],
+        &[
+            "nowhere: does not exist",
+            "expected an event folder",
+            "couloir new",
+        ],
+    ),
+    (
+        "no-such-file",
+        "nowhere/event.toml",
+        &[],
+        &["nowhere/event.toml: does not exist"],
+    ),
+    (
+        "no-event-in-folder",
+        "",
+        &[("track.csv", TRACK)],
+        &["no-event-in-folder: has no event.toml in it", "couloir new"],
+    ),
+    (
+        "event-is-a-folder",
+        "",
+        &[("event.toml/", "")],
+        &["event.toml: is a folder; expected a file"],
+    ),
+    (
+        "data-file-for-event",
+        "recording.csv",
+        &[("recording.csv", RECORDING)],
+        &["recording.csv: is a data file", "expected an event folder"],
+    ),
+    (
+        "no-track-file",
+        "",
+        &[("event.toml", EVENT), ("recording.csv", RECORDING)],
+        &["event.toml:4: track.file: ", "track.csv: does not exist"],
+    ),
+    (
+        "no-recording-file",
+        "",
+        &[("event.toml", EVENT), ("track.csv", TRACK)],
+        &["event.toml:14: recording.file: ", "recording.csv: does not exist"],
+    ),
+    (
+        "recording-is-a-folder",
+        "event.toml",
+        &[("event.toml", EVENT), ("track.csv", TRACK), ("recording.csv/", "")],
+        &["event.toml:14: recording.file: ", "recording.csv: is a folder"],
+    ),
+    ("newline-in-the-path", "a\nb", &[], &["a\\nb\": does not exist"]),
+];
+
+fn asked((name, ask, files, expected): &Asked) -> Case {
+    let bytes =
+        |(n, text): &(&'static str, &str)| (*n, text.as_bytes().to_vec());
+    Case { name, files: files.iter().map(bytes).collect(), ask, expected }
 }

@@ -2,8 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::process::Process;
-use super::{CELLS, NOUN, SAYS};
+use super::process::{CELLS, Process};
 use crate::block::List;
 use crate::diagnosis::hypothesis::UNKNOWN;
 use crate::error::{Error, Result};
@@ -14,6 +13,12 @@ use crate::physics::Rate;
 use crate::physics::forces::{Axis, Range, STEPS, Shape, Term};
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
+
+/// What a force of free form is called, and what it says.
+pub(crate) const NOUN: &str =
+    "a force that no mechanism of the catalogue describes";
+pub(crate) const SAYS: &str =
+    "A force that none of the mechanisms describes acts on the mass.";
 
 /// A force of free form, in [`CELLS`] cells along an axis.
 #[derive(Debug, Clone)]

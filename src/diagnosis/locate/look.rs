@@ -4,8 +4,7 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::CELLS;
-use super::process::Process;
+use super::process::{CELLS, Process};
 use super::tangent::{Cells, Tangent, Waves};
 use crate::error::{Error, Result};
 use crate::infer::{Climb, Landscape, Mixture, Slope};

@@ -4,9 +4,8 @@
 use nalgebra::{DMatrix, DVector};
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
 
-use super::CELLS;
 use super::look::{Look, Ridge, Sought};
-use super::process::Process;
+use super::process::{CELLS, Process};
 use super::tangent::{Tangent, Waves, half_log_det, log_normal};
 use crate::draws::log_sum_exp;
 use crate::error::{Error, Result};

@@ -26,13 +26,13 @@ use crate::physics::forces::Axis;
 use crate::seed::Seed;
 
 use free_form::{FreeForm, range};
+pub(super) use free_form::{NOUN, SAYS};
 use look::{Sought, proposal};
 use marginal::Marginal;
+pub use process::CELLS;
 pub(super) use process::Process;
 use tangent::Cells;
 
-/// How many cells the force has.
-pub const CELLS: usize = 40;
 /// How many draws of the process and the model's own parameters are made.
 const EFFORT: Effort =
     Effort { learning: 60, rounds: 3, last: (150, 600), error: 0.1 };
@@ -40,11 +40,6 @@ const EFFORT: Effort =
 /// by so much in ln.
 const FEW: Effort = Effort { last: (60, 60), ..EFFORT };
 const FAR: f64 = 3.0;
-/// What a force of free form is called, and what it says.
-pub(crate) const NOUN: &str =
-    "a force that no mechanism of the catalogue describes";
-pub(crate) const SAYS: &str =
-    "A force that none of the mechanisms describes acts on the mass.";
 
 /// The free-form force as a mechanism of its own, with the fit that it has.
 ///

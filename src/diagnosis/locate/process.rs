@@ -3,11 +3,12 @@
 use nalgebra::DMatrix;
 use statrs::distribution::{ContinuousCDF, Normal};
 
-use super::CELLS;
 use crate::error::{Error, Result};
 use crate::mechanism::Extent;
 use crate::prior::AnyPrior;
 
+/// How many cells a free-form force has.
+pub const CELLS: usize = 40;
 /// The prior median of the process's length \[m\], and the sd of its log.
 const LENGTH: (f64, f64) = (20.0, 0.7);
 /// The prior scale of the force \[m/s2\].

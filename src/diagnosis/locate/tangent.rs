@@ -10,7 +10,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use super::CELLS;
+use super::process::CELLS;
 use crate::error::Result;
 use crate::infer::Slope;
 use crate::model::{Information, Point, Posterior};

@@ -1,6 +1,6 @@
 //! A posterior to second order, put together from its groups.
 
-use super::{Group, Grouped};
+use super::group::{Group, Grouped};
 use crate::error::Result;
 use crate::model::{
     Density, Information, Listener, Model, Point, Posterior, Weights,

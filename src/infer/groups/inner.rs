@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 use rand::RngExt;
 
-use super::{Group, Grouped};
+use super::group::{Group, Grouped};
 use crate::error::Result;
 use crate::infer::backends::laplace_mixture::LaplaceMixture;
 use crate::infer::climb::{Peak, climb_holding};
@@ -55,8 +55,8 @@ impl<'a> Inner<'a> {
     }
 
     /// What the group looks like with the common coordinates of the first of
-    /// some places of the whole, from all of which modes are looked for; `None`
-    /// where nothing near it has a density.
+    /// some places of the whole, from all of which modes are looked for;
+    /// `None` where nothing near it has a density.
     pub(super) fn shape(
         &self,
         laplace: &LaplaceMixture,

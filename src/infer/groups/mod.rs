@@ -12,12 +12,13 @@
 //! With nothing in common Z is the product of what each group has alone. Else
 //! a proposal for all coordinates at once may do, as with two events; with
 //! five of four parameters each, the poor tails of every one multiply. Then
-//! theta is drawn from a mixture, as [`LaplaceMixture`] does with all coordinates, and
-//! every Z_i(theta) is estimated by importance sampling of its own: a product
-//! of unbiased estimates leaves the estimate of Z unbiased (Tran, Scharth,
-//! Gunawan, Kohn, Brown, Hawkins 2021).
+//! theta is drawn from a mixture, as [`LaplaceMixture`] does with all
+//! coordinates, and every Z_i(theta) is estimated by importance sampling of
+//! its own: a product of unbiased estimates leaves the estimate of Z unbiased
+//! (Tran, Scharth, Gunawan, Kohn, Brown, Hawkins 2021).
 
 mod assembly;
+mod group;
 mod inner;
 mod region;
 
@@ -39,29 +40,9 @@ use crate::model::{Point, Posterior};
 use crate::seed::Seed;
 
 use assembly::Assembly;
+pub use group::{Group, Grouped};
 use inner::Inner;
 use region::Region;
-
-/// Some coordinates of a posterior, as a posterior of their own.
-#[derive(Debug)]
-pub struct Group<'a> {
-    /// Prior and data of these coordinates alone.
-    pub posterior: &'a Posterior<'a>,
-    /// Which coordinate of the whole each of them is.
-    pub places: Vec<usize>,
-}
-
-/// A posterior with its groups.
-#[derive(Debug)]
-pub struct Grouped<'a> {
-    /// All coordinates.
-    pub whole: &'a Posterior<'a>,
-    /// Those that all groups have in common, under their prior alone; `None`
-    /// where there are none.
-    pub common: Option<Group<'a>>,
-    /// Each group, what is in common among its coordinates.
-    pub groups: Vec<Group<'a>>,
-}
 
 /// How many draws of what is in common are made: each costs a climb and dozens
 /// of draws in every group.

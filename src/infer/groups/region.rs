@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::Group;
+use super::group::Group;
 use super::inner::{Inner, Shape};
 use crate::error::Result;
 use crate::infer::backends::laplace_mixture::LaplaceMixture;

@@ -143,8 +143,12 @@ pub enum Varies {
     Nowhere,
     /// Constant on each piece of the track: exact solution.
     WithPlace,
-    /// With the speed too, in another way than up to its square: the motion
-    /// is integrated numerically.
+    /// With the speed too, in another way than up to its square: on each leg
+    /// of the motion a force of the exact family is fitted to the law.
+    ///
+    /// A law may jump at a speed that is known: it is met within 2e-7 of that
+    /// speed, and derivatives go along. By a speed that is unknown there are no
+    /// derivatives: let the law change over some speeds instead.
     WithSpeed,
 }
 

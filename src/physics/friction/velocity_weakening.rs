@@ -7,7 +7,8 @@ use crate::scalar::{Kind, Real};
 /// r = mu g cos(theta) (ratio + (1 - ratio) exp(-u/u0)): mu at rest, falling
 /// to a share r of it at speeds well above u0.
 ///
-/// Outside the exact family: integrated numerically.
+/// Outside the exact family: solved in legs, to each of which a force of the
+/// family is fitted.
 #[derive(Debug, Clone, Copy)]
 pub struct VelocityWeakening<S> {
     /// The friction coefficient at rest \[1\].
