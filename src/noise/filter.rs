@@ -13,6 +13,7 @@ use super::part::{Lapse, MOST_STATES, Square, Whole};
 use super::student::{Law, log_peak, normal_score};
 use super::{Conditional, Grid, Noise, one_per_time};
 use crate::error::Stop;
+use crate::prior::LN_SQRT_2PI;
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 
@@ -103,13 +104,17 @@ impl<'w, 'a, K: Kind, const N: usize> Filter<'w, 'a, K, N> {
         Predicted { mean, variance, across }
     }
 
-    /// Takes a value that differs so much from the prediction.
+    /// Takes a value in that differs so much from the prediction, and has such
+    /// a covariance with the state.
     #[inline]
-    fn learn(&mut self, predicted: &Predicted<K, N>, error: Real<K>) {
-        let Predicted { across, variance, .. } = predicted;
-        let inverse = 1.0 / *variance;
+    fn learn(
+        &mut self,
+        across: &[Real<K>; N],
+        error: Real<K>,
+        precision: Real<K>,
+    ) {
         for i in 0..N {
-            let gain = across[i] * inverse;
+            let gain = across[i] * precision;
             self.mean[i] += gain * error;
             for j in 0..=i {
                 let less = self.covariance[i][j] - gain * across[j];
@@ -161,26 +166,61 @@ enum Residuals<'r, K: Kind> {
     Drawn(&'r mut Rng, &'r mut Vec<f64>),
 }
 
-/// What is done with each value's prediction error.
-trait Visit<K: Kind> {
-    fn visit(&mut self, variance: Real<K>, error: Real<K>, log_size: Real<K>);
+/// The prediction error of a value over its size.
+struct Innovation<K: Kind> {
+    error: Real<K>,
+    /// Its variance, and one over that.
+    variance: Real<K>,
+    precision: Real<K>,
+    /// The logarithm of the value's size.
+    log_size: Option<Real<K>>,
 }
 
-impl<K: Kind, F: FnMut(Real<K>, Real<K>, Real<K>)> Visit<K> for F {
+impl<K: Kind> Innovation<K> {
+    /// The same value's law with what its size takes off the density.
+    fn sized(&self, mut value: Conditional<K>) -> Conditional<K> {
+        if let Some(log_size) = self.log_size {
+            value.log_density -= log_size;
+        }
+        value
+    }
+}
+
+/// The sum of logarithms, by that of the product as far as a number holds it.
+struct LogSum<K: Kind> {
+    sum: Real<K>,
+    product: Real<K>,
+}
+
+impl<K: Kind> LogSum<K> {
+    fn new() -> Self {
+        Self { sum: Real::new(0.0), product: Real::new(1.0) }
+    }
+
     #[inline(always)]
-    fn visit(&mut self, variance: Real<K>, error: Real<K>, log_size: Real<K>) {
-        self(variance, error, log_size);
+    fn add(&mut self, x: Real<K>) {
+        // Of either as far from 1 as this the product is a number.
+        const FAR: f64 = 1e140;
+        let far = |x: Real<K>| x > FAR || x < 1.0 / FAR;
+        if far(x) || far(self.product) {
+            self.sum += self.product.ln();
+            self.product = Real::new(1.0);
+        }
+        self.product *= x;
+    }
+
+    fn total(self) -> Real<K> {
+        self.sum + self.product.ln()
     }
 }
 
 impl<K: Kind> Whole<'_, K> {
-    /// Visits each value's prediction error over its size, with its variance
-    /// and the logarithm of its size.
+    /// Visits each value's prediction error.
     fn each(
         &self,
         at: &Grid,
         residuals: Residuals<'_, K>,
-        visit: impl Visit<K>,
+        visit: impl FnMut(&Innovation<K>),
     ) -> Result<(), Stop> {
         self.admit(at)?;
         match self.states() {
@@ -196,10 +236,10 @@ impl<K: Kind> Whole<'_, K> {
         &self,
         at: &Grid,
         mut residuals: Residuals<'_, K>,
-        mut visit: impl Visit<K>,
+        mut visit: impl FnMut(&Innovation<K>),
     ) -> Result<(), Stop> {
         let errors = at.standard_errors();
-        let (zero, white) = (Real::new(0.0), self.white());
+        let white = self.white();
         let mut filter = Filter::<K, N>::new(self);
         for i in 0..at.len() {
             let log_size = self.log_size(at, i);
@@ -211,7 +251,8 @@ impl<K: Kind> Whole<'_, K> {
             };
             filter.advance(Lapse::before(at, i));
             let predicted = filter.predict(own);
-            if !(predicted.variance > 0.0) {
+            let variance = predicted.variance;
+            if !(variance.value() > 0.0) {
                 return Err(Stop::Reject("a value has no error of its own"));
             }
             let error = match &mut residuals {
@@ -219,15 +260,15 @@ impl<K: Kind> Whole<'_, K> {
                     over.map_or(all[i], |over| all[i] * over) - predicted.mean
                 }
                 Residuals::Drawn(rng, drawn) => {
-                    let sd = predicted.variance.value().sqrt();
-                    let error = sd * self.deviate(rng)?;
+                    let error = variance.value().sqrt() * self.deviate(rng)?;
                     let size = log_size.map_or(1.0, |log| log.value().exp());
                     drawn.push((predicted.mean.value() + error) * size);
                     Real::new(error)
                 }
             };
-            visit.visit(predicted.variance, error, log_size.unwrap_or(zero));
-            filter.learn(&predicted, error);
+            let precision = 1.0 / variance;
+            visit(&Innovation { error, variance, precision, log_size });
+            filter.learn(&predicted.across, error, precision);
         }
         Ok(())
     }
@@ -258,18 +299,15 @@ impl<K: Kind> Noise<K> for Whole<'_, K> {
         one_per_time(at, residuals)?;
         let seen = Residuals::Seen(residuals);
         let Some(nu) = self.tails() else {
-            return self.each(at, seen, |variance, error, log_size| {
-                let mut value = Gaussian::new(variance).at(error);
-                value.log_density -= log_size;
-                visit(value);
+            return self.each(at, seen, |next| {
+                let law = Gaussian::new(next.variance);
+                visit(next.sized(law.at(next.error)));
             });
         };
         let (peak, narrower) = (log_peak(nu), (nu - 2.0) / nu);
-        self.each(at, seen, |variance: Real<K>, error, log_size| {
-            let law = Law::new(nu, peak, variance * narrower);
-            let mut value = law.at(error);
-            value.log_density -= log_size;
-            visit(value);
+        self.each(at, seen, |next| {
+            let law = Law::new(nu, peak, next.variance * narrower);
+            visit(next.sized(law.at(next.error)));
         })
     }
 
@@ -284,17 +322,21 @@ impl<K: Kind> Noise<K> for Whole<'_, K> {
             return Ok(total);
         }
         one_per_time(at, residuals)?;
-        let seen = Residuals::Seen(residuals);
-        self.each(at, seen, |variance, error, log_size| {
-            total += Gaussian::log_density(variance, error) - log_size;
+        let (mut squares, mut logs) = (total, LogSum::new());
+        self.each(at, Residuals::Seen(residuals), |next| {
+            squares += next.error * next.error * next.precision;
+            logs.add(next.variance);
+            if let Some(log_size) = next.log_size {
+                total -= log_size;
+            }
         })?;
-        Ok(total)
+        let constant = LN_SQRT_2PI * at.len() as f64;
+        Ok(total - 0.5 * (squares + logs.total()) - constant)
     }
 
     fn draw(&self, at: &Grid, rng: &mut Rng) -> Result<Vec<f64>, Stop> {
         let mut drawn = Vec::with_capacity(at.len());
-        let nothing = |_: Real<K>, _: Real<K>, _: Real<K>| {};
-        self.each(at, Residuals::Drawn(rng, &mut drawn), nothing)?;
+        self.each(at, Residuals::Drawn(rng, &mut drawn), |_| {})?;
         Ok(drawn)
     }
 

@@ -32,12 +32,6 @@ impl<K: Kind> Gaussian<K> {
         }
     }
 
-    /// That of one value alone.
-    #[inline(always)]
-    pub(crate) fn log_density(variance: Real<K>, r: Real<K>) -> Real<K> {
-        -0.5 * (r * r / variance + variance.ln()) - LN_SQRT_2PI
-    }
-
     /// The log density of `count` independent values with that sum of
     /// squares.
     #[inline]
