@@ -307,7 +307,7 @@ pub fn parse(text: &str) -> crate::Result<Box<dyn NoiseEntry>> {
         parts.push(entry);
     }
     let shapes = |name: &&str| ["tails", "growth"].contains(name);
-    if known.iter().all(|name| shapes(name)) {
+    if known.iter().all(shapes) {
         return Err(Error::input(format!(
             "\"{text}\" shapes errors that no block makes; add one, such as \
              white"

@@ -52,6 +52,7 @@ impl<'w, 'a, K: Kind, const N: usize> Filter<'w, 'a, K, N> {
 
     /// Lets the time before a value pass: x moves to F x, its covariance P to
     /// F P F' + Q.
+    #[expect(clippy::needless_range_loop, reason = "two entries at once")]
     #[inline]
     fn advance(&mut self, lapse: Lapse) {
         if lapse.steps == 0.0 || self.values.is_empty() {
@@ -62,17 +63,10 @@ impl<'w, 'a, K: Kind, const N: usize> Filter<'w, 'a, K, N> {
         }
         let f = &self.matrix;
         self.mean = times(f, &self.mean);
-        let mut half = [[Real::new(0.0); N]; N];
-        for (row, p) in half.iter_mut().zip(&self.covariance) {
-            // P is symmetric: row by row this is P F'.
-            *row = times(f, p);
-        }
+        let ahead = f.map(|row| times(&self.covariance, &row));
         for i in 0..N {
             for j in 0..=i {
-                let mut sum = self.noise[i][j];
-                for k in 0..N {
-                    sum += f[i][k] * half[k][j];
-                }
+                let sum = self.noise[i][j] + dot(&f[i], &ahead[j]);
                 self.covariance[i][j] = sum;
                 self.covariance[j][i] = sum;
             }
@@ -106,6 +100,7 @@ impl<'w, 'a, K: Kind, const N: usize> Filter<'w, 'a, K, N> {
 
     /// Takes a value in that differs so much from the prediction, and has such
     /// a covariance with the state.
+    #[expect(clippy::needless_range_loop, reason = "two entries at once")]
     #[inline]
     fn learn(
         &mut self,
@@ -139,13 +134,15 @@ fn times<K: Kind, const N: usize>(
     matrix: &Matrix<K, N>,
     x: &[Real<K>; N],
 ) -> [Real<K>; N] {
-    let mut image = [Real::new(0.0); N];
-    for (y, row) in image.iter_mut().zip(matrix) {
-        for (&a, &x) in row.iter().zip(x) {
-            *y += a * x;
-        }
-    }
-    image
+    std::array::from_fn(|i| dot(&matrix[i], x))
+}
+
+#[inline]
+fn dot<K: Kind, const N: usize>(
+    x: &[Real<K>; N],
+    y: &[Real<K>; N],
+) -> Real<K> {
+    x.iter().zip(y).map(|(&x, &y)| x * y).sum()
 }
 
 /// Puts a block on the diagonal.
@@ -201,7 +198,7 @@ impl<K: Kind> LogSum<K> {
     fn add(&mut self, x: Real<K>) {
         // Of either as far from 1 as this the product is a number.
         const FAR: f64 = 1e140;
-        let far = |x: Real<K>| x > FAR || x < 1.0 / FAR;
+        let far = |x: Real<K>| !(1.0 / FAR..=FAR).contains(&x.value());
         if far(x) || far(self.product) {
             self.sum += self.product.ln();
             self.product = Real::new(1.0);
@@ -252,7 +249,7 @@ impl<K: Kind> Whole<'_, K> {
             filter.advance(Lapse::before(at, i));
             let predicted = filter.predict(own);
             let variance = predicted.variance;
-            if !(variance.value() > 0.0) {
+            if variance <= 0.0 || variance.value().is_nan() {
                 return Err(Stop::Reject("a value has no error of its own"));
             }
             let error = match &mut residuals {

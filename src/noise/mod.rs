@@ -4,6 +4,10 @@
 //! of them are walked in one way, value after value, each given those before
 //! it; likelihood, pointwise likelihood and standardised innovations are
 //! three listeners to that walk.
+//!
+//! Blocks that say what an error remembers ([`Ou`], [`Matern32`], [`Ar`],
+//! [`White`]), what tails it has ([`Tails`]) and how its size changes
+//! ([`Growth`]) add up to a noise, in a [`Sum`](crate::block::Sum).
 
 mod altered;
 mod ar;

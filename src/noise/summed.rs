@@ -18,12 +18,13 @@ impl NoiseEntry for SumEntry {
 
     /// A name that two blocks share gets its block's before it.
     fn parameters(&self) -> Vec<(String, Field)> {
-        let of = |part: &Box<dyn NoiseEntry>| {
+        let of = |part: &dyn NoiseEntry| {
             let block = part.blocks().concat();
             let named = part.parameters().into_iter();
             named.map(move |(name, field)| (block.clone(), name, field))
         };
-        let all: Vec<_> = self.0.iter().flat_map(of).collect();
+        let all: Vec<_> =
+            self.0.iter().flat_map(|part| of(part.as_ref())).collect();
         let shared = |name: &str| {
             all.iter().filter(|(_, other, _)| other == name).count() > 1
         };
