@@ -6,6 +6,8 @@
 
 use smallvec::SmallVec;
 
+use crate::scalar::{Kind, Real};
+
 /// The values of a parameter that is a list or a vector; up to eight without
 /// touching the heap.
 pub type List<S> = SmallVec<[S; 8]>;
@@ -84,6 +86,33 @@ pub trait Named<S> {
 impl<S, B: Block<S>> Named<S> for B {
     fn names(&self, say: &mut dyn FnMut(&str)) {
         say(B::NAME);
+    }
+}
+
+/// Two blocks, or sums of blocks, at once: what `+` between blocks stands for,
+/// of laws as of noises.
+#[derive(Debug, Clone, Copy)]
+pub struct Sum<A, B> {
+    pub(crate) first: A,
+    pub(crate) second: B,
+}
+
+impl<A, B> Sum<A, B> {
+    /// The sum of two blocks.
+    pub fn new(first: A, second: B) -> Self {
+        Self { first, second }
+    }
+}
+
+impl<K, A, B> Named<Real<K>> for Sum<A, B>
+where
+    K: Kind,
+    A: Named<Real<K>>,
+    B: Named<Real<K>>,
+{
+    fn names(&self, say: &mut dyn FnMut(&str)) {
+        self.first.names(say);
+        self.second.names(say);
     }
 }
 

@@ -9,7 +9,7 @@ pub use crate::infer::{
     MetropolisHastings, Quiet, ReciprocalImportance, Smc, infer,
 };
 pub use crate::model::{Label, Model, Number, Point, Posterior, Program, Run};
-pub use crate::noise::{Ar, Iid, Student};
+pub use crate::noise::{Ar, Growth, Iid, Matern32, Ou, Student, Tails, White};
 pub use crate::observe::{Event, Series};
 pub use crate::physics::friction::{
     Cohesion, Coulomb, Curvature, Entrainment, Laws, Pcm, Turbulent,

@@ -39,6 +39,34 @@ model! {
     }
 }
 
+model! {
+    /// Smooth errors beside white ones.
+    struct Smooth { event: Event }
+    friction ~ Voellmy { mu: Gamma(9.0, 0.03), xi: Gamma(2.5, 400.0) };
+    errors ~ Matern32 {
+        sd_matern: LogNormal(0.5, 0.5),
+        time_matern: LogNormal(0.7, 0.5),
+    } + White { sigma2: InverseGamma(3.0, 2.0) };
+    likelihood {
+        let flow = event.slide(&friction)?;
+        event.velocity ~ flow.velocity() + errors;
+    }
+}
+
+model! {
+    /// Errors with a memory, with heavy tails, that grow.
+    struct Shaped { event: Event }
+    friction ~ Voellmy { mu: Gamma(9.0, 0.03), xi: Gamma(2.5, 400.0) };
+    errors ~ Ou { sd_ou: LogNormal(0.5, 0.5), time_ou: LogNormal(0.7, 0.5) }
+        + White { sigma2: InverseGamma(3.0, 2.0) }
+        + Tails { nu: Uniform(2.0, 20.0) }
+        + Growth { growth: Normal(0.0, 1.0) };
+    likelihood {
+        let flow = event.slide(&friction)?;
+        event.velocity ~ flow.velocity() + errors;
+    }
+}
+
 /// AR(1) errors as in equation 7 but without its first term.
 #[derive(Debug, Clone, Copy)]
 struct Firstless<S> {
@@ -118,6 +146,8 @@ fn event(step: f64, count: usize) -> Event {
 enum Case {
     Independent,
     Correlated,
+    Smooth,
+    Shaped,
     /// Simulated by the correlated model.
     Wrong,
 }
@@ -131,7 +161,9 @@ fn ranked(
     let right = |event: Event| -> Box<dyn Model> {
         match case {
             Case::Independent => Box::new(Independent::new(event)),
-            _ => Box::new(Correlated::new(event)),
+            Case::Smooth => Box::new(Smooth::new(event)),
+            Case::Shaped => Box::new(Shaped::new(event)),
+            Case::Correlated | Case::Wrong => Box::new(Correlated::new(event)),
         }
     };
     let remade =
@@ -176,7 +208,7 @@ fn every_backend_is_calibrated() {
         .filter(|name| !without.contains(name))
         .collect();
     let mut found = Vec::new();
-    for name in &names {
+    for name in names {
         for case in [Case::Independent, Case::Correlated] {
             let backend = backend(name, effort(name)).unwrap();
             let ranks =
@@ -184,12 +216,37 @@ fn every_backend_is_calibrated() {
             for (i, parameter) in ranks.names.iter().enumerate() {
                 let (p, counts) = (ranks.p(i), ranks.histogram(i));
                 println!("{name} {case:?} {parameter} p {p:.4} {counts:?}");
-                found.push((*name, parameter.clone(), p));
+                found.push((name, parameter.clone(), p));
             }
         }
     }
+    all_even(&found);
+}
+
+#[test]
+#[ignore = "slow: `cargo slow`"]
+fn sums_of_noises_are_calibrated() {
+    let mut found = Vec::new();
+    for name in ["mh", "laplace-mixture"] {
+        for case in [Case::Smooth, Case::Shaped] {
+            let backend = backend(name, effort(name)).unwrap();
+            // Denser than their memory lasts.
+            let event = event(0.5, 41);
+            let ranks = ranked(case, &event, backend.as_ref(), REPLICATIONS);
+            for (i, parameter) in ranks.names.iter().enumerate() {
+                let (p, counts) = (ranks.p(i), ranks.histogram(i));
+                println!("{name} {case:?} {parameter} p {p:.4} {counts:?}");
+                found.push((name, parameter.clone(), p));
+            }
+        }
+    }
+    all_even(&found);
+}
+
+/// Whether all ranks are even, by Bonferroni's bound.
+fn all_even(found: &[(&str, String, f64)]) {
     let limit = 0.001 / found.len() as f64;
-    for (name, parameter, p) in &found {
+    for (name, parameter, p) in found {
         assert!(*p > limit, "{name} {parameter}: p = {p}");
     }
 }

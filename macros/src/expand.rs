@@ -282,7 +282,7 @@ impl Writer<'_> {
             sum = Some(match sum {
                 None => block,
                 Some(sum) => quote_spanned! {at=>
-                    ::couloir::physics::Sum::new(#sum, #block)
+                    ::couloir::block::Sum::new(#sum, #block)
                 },
             });
         }

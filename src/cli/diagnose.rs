@@ -26,7 +26,8 @@ pub(super) struct Arguments {
     /// Friction law instead of the event's
     #[arg(long, value_name = "LAW")]
     friction: Option<String>,
-    /// Noise instead of the event's: iid, ar(k), student
+    /// Noise instead of the event's: iid, ar(k), student, or one or a sum of
+    /// white, ou, matern32, ar(k), tails, growth, such as "matern32 + white"
     #[arg(long, value_name = "NOISE")]
     noise: Option<String>,
     /// Prior odds of a mechanism against 1 for each other, such as

@@ -188,7 +188,7 @@ fn notes(models: &[Predicted<'_>], best: &Predicted<'_>) -> Vec<String> {
             "Note: each value is predicted from those before it, from {least} \
              known values on."
         )),
-        None if models.iter().any(|m| m.name.contains("ar(")) => {
+        None if models.iter().any(|m| remembers(&m.name)) => {
             notes.push(CONDITIONAL.to_owned());
         }
         None => {}
@@ -196,8 +196,14 @@ fn notes(models: &[Predicted<'_>], best: &Predicted<'_>) -> Vec<String> {
     notes
 }
 
-const CONDITIONAL: &str = "Note: under ar(k) a value is scored given the \
-    values before it. Leaving it out does not hide it from the value after \
+/// Whether a model's noise has a memory, by its name: "voellmy, ar(1)".
+fn remembers(model: &str) -> bool {
+    let mut blocks = model.split([',', '+']).map(str::trim);
+    blocks.any(|b| b.starts_with("ar(") || b == "ou" || b == "matern32")
+}
+
+const CONDITIONAL: &str = "Note: where errors have a memory, a value is scored \
+    given the values before it. Leaving it out does not hide it from the value after \
     it, so this is not how well a missing value would be predicted, and a \
     noise without memory is scored by another question. --lfo asks all \
     models the same: the next value, from the past alone.";

@@ -189,9 +189,8 @@ impl Assembled {
     /// arguments.
     pub fn blocks(&self) -> Vec<String> {
         let laws = self.friction.terms().iter().map(|law| law.name());
-        let noise = self.noise.name();
         let added = self.mechanisms().map(|m| m.name());
-        let all = laws.chain([without_order(&noise)]).chain(added);
+        let all = laws.chain(self.noise.blocks()).chain(added);
         all.map(str::to_owned).collect()
     }
 
@@ -203,7 +202,7 @@ impl Assembled {
 
     /// How many of the parameters are the noise's; they come last.
     pub fn noise_dimension(&self) -> usize {
-        self.noise.parameters().len()
+        self.noise.dimension()
     }
 
     /// The field of the noise that each of these is a value of.
@@ -352,7 +351,7 @@ impl Assembled {
         errors: &[Real<K>],
     ) -> Outcome {
         let friction = run.declare(self.friction.with(laws));
-        run.has(|say| say(without_order(&self.noise.name())));
+        run.has(|say| self.noise.blocks().into_iter().for_each(say));
         let flow = self.event.slide(&friction)?;
         let mut outcome = Ok(());
         K::noise(self.noise.as_ref()).with(errors, &mut |noise| {
@@ -402,11 +401,6 @@ fn fields(
         .collect()
 }
 
-/// A noise's name without its argument: "ar" of "ar(2)".
-fn without_order(name: &str) -> &str {
-    name.split('(').next().unwrap_or_default()
-}
-
 fn quantity(event: &Event) -> Quantity {
     event.recordings().next().map_or(Quantity::Velocity, |s| s.quantity())
 }
@@ -430,7 +424,46 @@ fn default_prior(field: &Field, event: &Event) -> Result<AnyPrior> {
         "phi" if is_uneven(event) => "Uniform(0, 1)",
         _ => field.prior,
     };
-    AnyPrior::parse(text)
+    AnyPrior::parse(&scaled(text, event))
+}
+
+/// A block's default with the scales of an event put in: `size`, the largest
+/// value recorded, its square `size2`, and the `duration` of the recording
+/// \[s\], each after a number, and after `ln` where a logarithm is meant.
+fn scaled(text: &str, event: &Event) -> String {
+    let (mut size, mut duration) = (0.0_f64, 0.0_f64);
+    for series in event.recordings() {
+        let sizes = series.values().iter().map(|v| v.abs());
+        size = sizes.fold(size, f64::max);
+        let times = series.times();
+        let last = times.last().zip(times.first()).map_or(0.0, |(b, a)| b - a);
+        duration = duration.max(last);
+    }
+    let or_one = |x: f64| if x > 0.0 { x } else { 1.0 };
+    let (size, duration) = (or_one(size), or_one(duration));
+    let scale = |word: &str| match word {
+        "size" => Some(size),
+        "size2" => Some(size * size),
+        "duration" => Some(duration),
+        _ => None,
+    };
+    let Some((name, arguments)) = text.split_once('(') else {
+        return text.to_owned();
+    };
+    let of = |argument: &str| {
+        let (is_log, rest) = match argument.strip_prefix("ln ") {
+            Some(rest) => (true, rest),
+            None => (false, argument),
+        };
+        let (number, word) = rest.split_once(' ')?;
+        let value = number.parse::<f64>().ok()? * scale(word)?;
+        let value = if is_log { value.ln() } else { value };
+        Some(format!("{value:.3}"))
+    };
+    let arguments = arguments.trim_end_matches(')').split(',').map(str::trim);
+    let all: Vec<String> =
+        arguments.map(|a| of(a).unwrap_or_else(|| a.to_owned())).collect();
+    format!("{name}({})", all.join(", "))
 }
 
 /// Uneven times have a correlated noise only in its continuous form, whose

@@ -1,5 +1,6 @@
 //! Autoregressive errors of any order, the paper's M1 for order 1.
 
+mod companion;
 mod first;
 mod levinson;
 mod root;
@@ -10,6 +11,7 @@ use self::first::First;
 use self::levinson::{Predictor, one_minus_square};
 use self::root::Filter;
 use super::gaussian::Gaussian;
+use super::part::check_increasing;
 use super::{
     Conditional, Grid, Noise, Spacing, Stationary, is_positive, one_per_time,
 };
@@ -227,14 +229,7 @@ impl<K: Kind> Noise<K> for Ar<Real<K>> {
     }
 
     fn check(&self, at: &Grid) -> crate::Result<()> {
-        let late = |w: &&[f64]| w[1] <= w[0];
-        if let Some(w) = at.times().windows(2).find(late) {
-            return Err(Error::input(format!(
-                "ar needs increasing times, and {} s follows {} s; merge the \
-                 two values, or use iid",
-                w[1], w[0]
-            )));
-        }
+        check_increasing("ar", at)?;
         self.exists(at)
     }
 

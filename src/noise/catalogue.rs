@@ -3,7 +3,10 @@
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
-use super::{Ar, Iid, Noise, Student};
+use super::summed::SumEntry;
+use super::{
+    Ar, Growth, Iid, Matern32, Noise, Ou, Part, Student, Tails, White, Whole,
+};
 use crate::block::{Block, Field};
 use crate::error::{Error, Stop};
 use crate::scalar::{Grad, Kind, Plain, Real, Reverse};
@@ -17,11 +20,22 @@ pub trait NoiseFor<K: Kind> {
     /// Calls `then` with the noise that has these values, in the order of
     /// [`NoiseEntry::parameters`].
     ///
-    /// `Err(Stop::Fail)`, without the call, where they are not as many.
+    /// # Errors
+    /// [`Stop::Fail`], without the call, where they are not as many.
     fn with(
         &self,
         values: &[Real<K>],
         then: &mut dyn FnMut(&dyn Noise<K>),
+    ) -> Result<(), Stop>;
+
+    /// The same as a summand of a noise.
+    ///
+    /// # Errors
+    /// The same, and where it is none.
+    fn part(
+        &self,
+        values: &[Real<K>],
+        then: &mut dyn FnMut(&dyn Part<K>),
     ) -> Result<(), Stop>;
 }
 
@@ -43,6 +57,12 @@ pub trait NoiseEntry:
     /// The name and field of each parameter; a list of one is called as its
     /// field (`phi`), a longer one `phi[1]`, `phi[2]` and so on.
     fn parameters(&self) -> Vec<(String, Field)>;
+
+    /// How many these are.
+    fn dimension(&self) -> usize;
+
+    /// The names of its blocks, without arguments.
+    fn blocks(&self) -> Vec<&'static str>;
 }
 
 /// Kinds that a named noise can be built with.
@@ -62,27 +82,53 @@ macro_rules! noise_kind {
 }
 noise_kind!(Plain, Grad<2>, Grad<4>, Grad<8>, Grad<16>, Reverse);
 
-/// Lists the noises: each is one entry here and one file.
+/// What a block of the catalogue is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Role {
+    /// A noise by itself only.
+    Alone,
+    /// A noise by itself, and a summand.
+    Either,
+    /// A summand only.
+    Summand,
+}
+
+/// Lists the blocks: each is one entry here and one file.
 macro_rules! catalogue {
-    ($($noise:ident),* $(,)?) => {
-        const NOISES: &[Listed] = &[$(Listed {
+    ($($role:ident: $($noise:ident),*;)*) => {
+        const NOISES: &[Listed] = &[$($(Listed {
             name: <$noise<f64> as Block<f64>>::NAME,
             fields: <$noise<f64> as Block<f64>>::FIELDS,
+            role: Role::$role,
             open: |length| Box::new(Entry {
                 length,
                 block: PhantomData::<fn() -> $noise<f64>>,
             }),
-        }),*];
+        }),*),*];
 
-        $(impl<K: Kind> NoiseFor<K> for Entry<$noise<f64>> {
+        $($(catalogue!(@ $role $noise);)*)*
+    };
+    (@ $role:ident $noise:ident) => {
+        impl<K: Kind> NoiseFor<K> for Entry<$noise<f64>> {
             fn with(
                 &self,
                 values: &[Real<K>],
                 then: &mut dyn FnMut(&dyn Noise<K>),
             ) -> Result<(), Stop> {
                 self.admit(values.len())?;
-                then(&$noise::<Real<K>>::from_values(values));
+                let block = $noise::<Real<K>>::from_values(values);
+                catalogue!(@noise $role block then);
                 Ok(())
+            }
+
+            fn part(
+                &self,
+                values: &[Real<K>],
+                then: &mut dyn FnMut(&dyn Part<K>),
+            ) -> Result<(), Stop> {
+                self.admit(values.len())?;
+                let block = $noise::<Real<K>>::from_values(values);
+                catalogue!(@part $role block then)
             }
         }
 
@@ -94,11 +140,35 @@ macro_rules! catalogue {
             fn parameters(&self) -> Vec<(String, Field)> {
                 self.all_parameters()
             }
-        })*
+
+            fn dimension(&self) -> usize {
+                self.expected()
+            }
+
+            fn blocks(&self) -> Vec<&'static str> {
+                vec![<$noise<f64> as Block<f64>>::NAME]
+            }
+        }
     };
+    (@noise Summand $block:ident $then:ident) => {
+        $then(&Whole::of(&$block))
+    };
+    (@noise $role:ident $block:ident $then:ident) => { $then(&$block) };
+    (@part Alone $block:ident $then:ident) => {{
+        let (_, _) = ($block, $then);
+        Err(Stop::Fail(Error::inference("not a summand of a noise")))
+    }};
+    (@part $role:ident $block:ident $then:ident) => {{
+        $then(&$block);
+        Ok(())
+    }};
 }
 
-catalogue![Iid, Ar, Student];
+catalogue! {
+    Alone: Iid, Student;
+    Either: Ar, Ou, Matern32, White;
+    Summand: Tails, Growth;
+}
 
 /// Whether a noise of the catalogue has this name.
 pub(crate) fn is_noise(name: &str) -> bool {
@@ -109,12 +179,24 @@ pub(crate) fn is_noise(name: &str) -> bool {
 struct Listed {
     name: &'static str,
     fields: &'static [Field],
+    role: Role,
     open: fn(usize) -> Box<dyn NoiseEntry>,
 }
 
 impl Listed {
     fn has_list(&self) -> bool {
         self.fields.iter().any(|f| f.list)
+    }
+
+    /// What to write instead of it in a sum.
+    fn no_summand(&self) -> Option<&'static str> {
+        match (self.role, self.name) {
+            (Role::Alone, "student") => {
+                Some("in a sum write \"tails\" for tails as heavy")
+            }
+            (Role::Alone, _) => Some("in a sum write \"white\" for it"),
+            _ => None,
+        }
     }
 
     /// How an event file writes it.
@@ -153,9 +235,14 @@ impl<B: Block<f64>> Entry<B> {
         B::FIELDS.iter().flat_map(of).collect()
     }
 
-    fn admit(&self, found: usize) -> Result<(), Stop> {
+    /// How many values it takes.
+    fn expected(&self) -> usize {
         let lists = B::FIELDS.iter().filter(|f| f.list).count();
-        let expected = B::FIELDS.len() - lists + lists * self.length;
+        B::FIELDS.len() - lists + lists * self.length
+    }
+
+    fn admit(&self, found: usize) -> Result<(), Stop> {
+        let expected = self.expected();
         if found == expected {
             return Ok(());
         }
@@ -166,24 +253,71 @@ impl<B: Block<f64>> Entry<B> {
     }
 }
 
-/// How event files write the noises there are: "iid", "ar(k)" and so on.
+/// How event files write the blocks of noises there are: "iid", "ar(k)" and
+/// so on.
 pub fn names() -> Vec<String> {
     NOISES.iter().map(Listed::pattern).collect()
 }
 
-/// The noise that an event file names: "iid", "ar(2)", "student".
+/// The noise that an event file names: "iid", "ar(2)", "student", or a sum
+/// such as "matern32 + white".
 ///
 /// ```
-/// let noise = couloir::noise::parse("ar(2)")?;
+/// let noise = couloir::noise::parse("ar(2) + white")?;
 /// let names: Vec<String> =
 ///     noise.parameters().into_iter().map(|(name, _)| name).collect();
-/// assert_eq!(names, ["phi[1]", "phi[2]", "sigma2"]);
+/// assert_eq!(names, ["phi[1]", "phi[2]", "ar.sigma2", "white.sigma2"]);
 /// let error = couloir::noise::parse("studnet").unwrap_err();
 /// assert!(error.to_string().contains("did you mean \"student\"?"));
 /// # Ok::<(), couloir::Error>(())
 /// ```
+///
+/// # Errors
+/// A name that is not known, a sum of what does not add up.
 pub fn parse(text: &str) -> crate::Result<Box<dyn NoiseEntry>> {
-    let text = text.trim();
+    let terms: Vec<&str> = text.split('+').map(str::trim).collect();
+    if let [term] = terms[..] {
+        let (noise, entry) = block(term)?;
+        return match noise.role {
+            Role::Summand => Err(Error::input(format!(
+                "\"{term}\" shapes errors that another block makes; write it \
+                 beside one, as in \"white + {term}\""
+            ))),
+            _ => Ok(entry),
+        };
+    }
+    let mut parts = Vec::with_capacity(terms.len());
+    let mut known: Vec<&str> = Vec::new();
+    for term in terms {
+        let (noise, entry) = block(term)?;
+        if let Some(mend) = noise.no_summand() {
+            return Err(Error::input(format!(
+                "\"{}\" stands by itself: {mend}",
+                noise.name
+            )));
+        }
+        if known.contains(&noise.name) {
+            return Err(Error::input(format!(
+                "\"{}\" is in the noise twice; expected each block once: \
+                 drop one of them",
+                noise.name
+            )));
+        }
+        known.push(noise.name);
+        parts.push(entry);
+    }
+    let shapes = |name: &&str| ["tails", "growth"].contains(name);
+    if known.iter().all(shapes) {
+        return Err(Error::input(format!(
+            "\"{text}\" shapes errors that no block makes; add one, such as \
+             white"
+        )));
+    }
+    Ok(Box::new(SumEntry(parts)))
+}
+
+/// A block by its name and its order.
+fn block(text: &str) -> crate::Result<(&'static Listed, Box<dyn NoiseEntry>)> {
     let (name, argument) = match text.split_once('(') {
         None => (text, None),
         Some((name, rest)) => match rest.strip_suffix(')') {
@@ -199,7 +333,7 @@ pub fn parse(text: &str) -> crate::Result<Box<dyn NoiseEntry>> {
     let Some(noise) = NOISES.iter().find(|n| n.name == name) else {
         return Err(unknown(name));
     };
-    Ok((noise.open)(length(noise, argument)?))
+    Ok((noise, (noise.open)(length(noise, argument)?)))
 }
 
 /// How long the lists of the noise are, from what stands in its brackets.
@@ -265,18 +399,24 @@ mod tests {
             assert_eq!(entry.name(), text);
             entry.parameters().into_iter().map(|(name, _)| name).collect()
         };
-        assert_eq!(names(), ["iid", "ar(k)", "student"]);
+        let all = "iid, student, ar(k), ou, matern32, white, tails, growth";
+        assert_eq!(names().join(", "), all);
         assert_eq!(listed("iid"), ["sigma2"]);
         assert_eq!(listed("ar(1)"), ["phi", "sigma2"]);
         assert_eq!(listed("ar(3)"), ["phi[1]", "phi[2]", "phi[3]", "sigma2"]);
         assert_eq!(listed("student"), ["dof", "scale"]);
         assert_eq!(parse(" ar( 20 ) ").unwrap().name(), "ar(20)");
+        let sum = "matern32 + white + tails + growth";
+        let own = ["sd_matern", "time_matern", "sigma2", "nu", "growth"];
+        assert_eq!(listed(sum), own);
+        assert_eq!(parse("ou+white").unwrap().name(), "ou + white");
+        assert_eq!(parse(sum).unwrap().dimension(), 5);
     }
 
     #[test]
     fn wrong_names_are_answered_with_a_mend() {
         for (text, answer) in [
-            ("idd", "no noise \"idd\", there are iid, ar(k), student"),
+            ("idd", "no noise \"idd\", there are iid, student, ar(k), ou"),
             ("idd", "; did you mean \"iid\"?"),
             ("ar", "write \"ar(1)\""),
             ("ra(2)", "there is no noise \"ra\""),
@@ -286,7 +426,14 @@ mod tests {
             ("ar(2", "does not close it"),
             ("iid(3)", "takes no argument, and has (3)"),
             ("", "there is no noise \"\""),
-            ("something", "there are iid, ar(k), student"),
+            ("something", "there are iid, student, ar(k)"),
+            ("tails", "as in \"white + tails\""),
+            ("tails + growth", "add one, such as white"),
+            ("iid + ou", "in a sum write \"white\""),
+            ("ou + student", "in a sum write \"tails\""),
+            ("ou + white + ou", "\"ou\" is in the noise twice"),
+            ("ou + ", "there is no noise \"\""),
+            ("ou + matern", "did you mean \"matern32\"?"),
         ] {
             let error = parse(text).unwrap_err();
             assert!(error.is_input());

@@ -16,6 +16,8 @@ pub struct Grid {
     step: f64,
     spacing: Spacing,
     standard_errors: Option<Vec<f64>>,
+    /// When the whole recording begins and ends [s].
+    span: [f64; 2],
 }
 
 /// How the times are spaced.
@@ -44,11 +46,13 @@ impl Grid {
     /// each value in the unit of the recording.
     pub fn new(times: Vec<f64>, standard_errors: Option<Vec<f64>>) -> Self {
         let (step, spacing) = measure(&times);
-        Self { times, step, spacing, standard_errors }
+        let ends = [times.first(), times.last()];
+        let span = ends.map(|time| time.copied().unwrap_or(0.0));
+        Self { times, step, spacing, standard_errors, span }
     }
 
-    /// The first `count` times on the same grid: step and spacing stay those
-    /// of all times, so that the parameters of a noise mean the same.
+    /// The first `count` times on the same grid: step, spacing and span stay
+    /// those of all times, so that the parameters of a noise mean the same.
     #[must_use]
     pub fn first(&self, count: usize) -> Self {
         let count = count.min(self.len());
@@ -62,6 +66,7 @@ impl Grid {
             step: self.step,
             spacing,
             standard_errors: errors.map(|all| all[..count].to_vec()),
+            span: self.span,
         }
     }
 
@@ -94,6 +99,14 @@ impl Grid {
     /// The known standard error of each value.
     pub fn standard_errors(&self) -> Option<&[f64]> {
         self.standard_errors.as_deref()
+    }
+
+    /// Which share of the recording's time has passed at the value `i`; a half
+    /// where it takes none.
+    pub(crate) fn share(&self, i: usize) -> f64 {
+        let [begin, end] = self.span;
+        let share = (self.times[i] - begin) / (end - begin);
+        if share.is_finite() { share } else { 0.5 }
     }
 
     /// How far the value `i` lies behind the one before, in steps; 0 for the

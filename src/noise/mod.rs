@@ -4,16 +4,28 @@
 //! of them are walked in one way, value after value, each given those before
 //! it; likelihood, pointwise likelihood and standardised innovations are
 //! three listeners to that walk.
+//!
+//! Blocks that say what an error remembers ([`Ou`], [`Matern32`], [`Ar`],
+//! [`White`]), what tails it has ([`Tails`]) and how its size changes
+//! ([`Growth`]) add up to a noise, in a [`Sum`](crate::block::Sum).
 
 mod altered;
 mod ar;
 mod catalogue;
+mod filter;
 mod gaussian;
 mod grid;
+mod growth;
 mod iid;
+mod matern32;
+mod ou;
+mod part;
 mod student;
+mod summed;
+mod tails;
 #[cfg(test)]
 mod tests;
+mod white;
 mod wide;
 
 pub use altered::{Alteration, Altered};
@@ -21,8 +33,14 @@ pub use ar::Ar;
 pub(crate) use catalogue::is_noise;
 pub use catalogue::{NoiseEntry, NoiseFor, NoiseKind, names, parse};
 pub use grid::{Grid, Spacing};
+pub use growth::Growth;
 pub use iid::Iid;
+pub use matern32::Matern32;
+pub use ou::Ou;
+pub use part::{Lapse, Memory, Part, Square, Transition, Whole};
 pub use student::Student;
+pub use tails::Tails;
+pub use white::White;
 pub use wide::Wide;
 
 use crate::error::{Error, Stop};

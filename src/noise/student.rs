@@ -95,8 +95,7 @@ impl<K: Kind> Noise<K> for Student<Real<K>> {
         visit: &mut dyn FnMut(Conditional<K>),
     ) -> Result<(), Stop> {
         self.each(at, residuals, |law, r| {
-            let deviate = r * law.inverse_width;
-            visit(Conditional { log_density: law.log_density(r), deviate });
+            visit(law.at(r));
         })
     }
 
@@ -148,7 +147,7 @@ pub(super) fn normal_score(deviate: f64, dof: f64) -> f64 {
 
 /// A Student density of mean 0 with its constants worked out once.
 #[derive(Debug, Clone, Copy)]
-struct Law<K: Kind> {
+pub(super) struct Law<K: Kind> {
     constant: Real<K>,
     power: Real<K>,
     /// 1 / (dof w^2).
@@ -158,13 +157,24 @@ struct Law<K: Kind> {
 
 impl<K: Kind> Law<K> {
     #[inline]
-    fn new(dof: Real<K>, log_peak: Real<K>, square: Real<K>) -> Self {
+    pub(super) fn new(
+        dof: Real<K>,
+        log_peak: Real<K>,
+        square: Real<K>,
+    ) -> Self {
         Self {
             constant: log_peak - 0.5 * square.ln(),
             power: 0.5 * (dof + 1.0),
             precision: 1.0 / (dof * square),
             inverse_width: 1.0 / square.sqrt(),
         }
+    }
+
+    /// One value.
+    #[inline]
+    pub(super) fn at(&self, r: Real<K>) -> Conditional<K> {
+        let deviate = r * self.inverse_width;
+        Conditional { log_density: self.log_density(r), deviate }
     }
 
     #[inline]

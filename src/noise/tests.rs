@@ -8,10 +8,11 @@ use statrs::distribution::{
 
 mod changed;
 mod double;
+mod sums;
 
 use self::double::Double;
 use super::*;
-use crate::block::Block;
+use crate::block::{Block, Sum};
 use crate::scalar::{Grad, Plain};
 use crate::seed::Seed;
 
@@ -269,6 +270,12 @@ fn cases() -> Vec<(Box<dyn Noise<Plain>>, Grid)> {
         cases.push((Box::new(Iid { sigma2: x(0.8) }), at.clone()));
         let student = Student { dof: x(3.5), scale: x(0.8) };
         cases.push((Box::new(student), at.clone()));
+        let smooth = Matern32 { sd_matern: x(0.9), time_matern: x(0.3) };
+        let white = White { sigma2: x(0.2) };
+        let both = Sum::new(smooth, white);
+        cases.push((Box::new(both), at.clone()));
+        let shaped = Sum::new(Tails { nu: x(5.0) }, Growth { growth: x(0.7) });
+        cases.push((Box::new(Sum::new(both, shaped)), at.clone()));
         for phi in [&[0.6][..], &[0.7, -0.4], &[0.2, 0.3, -0.6]] {
             let noise = ar(phi, 0.8);
             if noise.check(&at).is_ok() {

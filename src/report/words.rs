@@ -120,19 +120,23 @@ fn errors(report: &CalibrationReport) -> String {
         _ => "How far the median flow is from the recording is not known"
             .to_owned(),
     };
-    let ar = report.noise.starts_with("ar");
     for p in report.parameters.iter().filter(|p| p.of_errors).take(LISTED) {
         out.push_str("; ");
-        out.push_str(&error_clause(p, ar, &unit(&report.unit)));
+        out.push_str(&error_clause(p, &report.noise, &unit(&report.unit)));
     }
     out + "."
 }
 
 /// The clause about a parameter of the errors: a variance is told as a
 /// standard deviation, which a reader can hold against the instrument's.
-fn error_clause(p: &ParameterReport, ar: bool, unit: &str) -> String {
-    let of = if ar { "the innovations of the errors" } else { "the errors" };
-    let deviation = |root: fn(f64) -> f64| {
+fn error_clause(p: &ParameterReport, noise: &str, unit: &str) -> String {
+    let of_white = p.name.starts_with("white.") || !noise.contains("ar(");
+    let scattered = match (noise.contains('+'), of_white) {
+        (true, true) => "errors without memory",
+        (false, true) => "the errors",
+        (_, false) => "the innovations of the errors",
+    };
+    let deviation = |of: &str, root: fn(f64) -> f64| {
         format!(
             "{of} have a standard deviation of {} {unit} ({} to {})",
             significant(root(p.q50), 2),
@@ -141,8 +145,14 @@ fn error_clause(p: &ParameterReport, ar: bool, unit: &str) -> String {
         )
     };
     match p.name.rsplit('.').next().unwrap_or_default() {
-        "sigma2" => deviation(f64::sqrt),
-        "sigma" => deviation(|x| x),
+        "sigma2" => deviation(scattered, f64::sqrt),
+        "sigma" => deviation(scattered, |x| x),
+        "sd_matern" => deviation("smooth errors", |x| x),
+        "sd_ou" => deviation("errors with a memory", |x| x),
+        "time_matern" => {
+            format!("smooth errors are alike over {}", estimate(p, false))
+        }
+        "time_ou" => format!("their memory lasts {}", estimate(p, false)),
         "phi" => format!(
             "the errors' correlation from one value to the next is {}",
             estimate(p, false)

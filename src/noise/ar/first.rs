@@ -38,7 +38,7 @@ impl<K: Kind> First<K> {
         (self.last.1, self.last.2)
     }
 
-    fn transition(&self, distance: f64) -> (Real<K>, Real<K>) {
+    pub(super) fn transition(&self, distance: f64) -> (Real<K>, Real<K>) {
         if distance == 1.0 {
             return (self.phi, self.sigma2);
         }

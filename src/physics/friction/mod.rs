@@ -23,7 +23,6 @@ pub use curvature::Curvature;
 pub use entrainment::Entrainment;
 pub use law::{Law, LawKind, LawSum, Laws, RateOf, Valued};
 pub use pcm::Pcm;
-pub use sum::Sum;
 pub use turbulent::Turbulent;
 pub use velocity_weakening::VelocityWeakening;
 pub use viscous::Viscous;
@@ -31,6 +30,7 @@ pub use voellmy::Voellmy;
 
 use std::ops::Add;
 
+pub use crate::block::Sum;
 use crate::scalar::{Kind, Real};
 
 /// Every law that an event file can name.

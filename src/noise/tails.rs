@@ -1,0 +1,46 @@
+//! Heavy tails of what errors do not remember.
+
+use super::part::{Part, Whole};
+use crate::block::{Block, Field};
+use crate::scalar::{Kind, Real};
+
+/// What of an error is not told by those before it is t distributed with nu
+/// degrees of freedom, of the same variance as without:
+///
+///   r_i ~ t_nu(m_i, v_i (nu - 2)/nu),
+///
+/// m_i and v_i the mean and the variance given all before (Lange, Little and
+/// Taylor 1989, for each value in turn).
+///
+/// ```
+/// use couloir::block::Sum;
+/// use couloir::noise::{Grid, Noise, Student, Tails, White};
+/// use couloir::scalar::{Plain, Real};
+/// let x = Real::<Plain>::new;
+/// let noise = Sum::new(White { sigma2: x(3.0) }, Tails { nu: x(6.0) });
+/// let same = Student { dof: x(6.0), scale: x(2f64.sqrt()) };
+/// let (at, r) = (Grid::new(vec![0.0], None), [x(2.0)]);
+/// let [a, b] = [noise.log_likelihood(&at, &r), same.log_likelihood(&at, &r)];
+/// assert!((a.unwrap().value() - b.unwrap().value()).abs() < 1e-12);
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct Tails<S> {
+    /// The degrees of freedom, a pure number above 2.
+    pub nu: S,
+}
+
+impl<S: Clone> Block<S> for Tails<S> {
+    const NAME: &'static str = "tails";
+    const FIELDS: &'static [Field] =
+        &[Field::new("nu", "1", "Uniform(2, 30)")];
+
+    fn from_values(values: &[S]) -> Self {
+        Self { nu: values[0].clone() }
+    }
+}
+
+impl<K: Kind> Part<K> for Tails<Real<K>> {
+    fn join<'a>(&'a self, whole: &mut Whole<'a, K>) {
+        whole.tail(self.nu);
+    }
+}
