@@ -6,8 +6,6 @@
 
 use smallvec::SmallVec;
 
-use crate::scalar::{Kind, Real};
-
 /// The values of a parameter that is a list or a vector; up to eight without
 /// touching the heap.
 pub type List<S> = SmallVec<[S; 8]>;
@@ -101,18 +99,6 @@ impl<A, B> Sum<A, B> {
     /// The sum of two blocks.
     pub fn new(first: A, second: B) -> Self {
         Self { first, second }
-    }
-}
-
-impl<K, A, B> Named<Real<K>> for Sum<A, B>
-where
-    K: Kind,
-    A: Named<Real<K>>,
-    B: Named<Real<K>>,
-{
-    fn names(&self, say: &mut dyn FnMut(&str)) {
-        self.first.names(say);
-        self.second.names(say);
     }
 }
 

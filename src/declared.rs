@@ -6,6 +6,7 @@
 
 use std::ops::Deref;
 
+use crate::block::{Named, Sum};
 use crate::context::Context;
 use crate::error::Stop;
 use crate::mechanism::Change;
@@ -55,6 +56,19 @@ impl<K: Kind, B> Deref for Declared<'_, K, B> {
     type Target = B;
     fn deref(&self) -> &B {
         &self.block
+    }
+}
+
+/// A sum is known by the names of its terms.
+impl<K, A, B> Named<Real<K>> for Sum<A, B>
+where
+    K: Kind,
+    A: Named<Real<K>>,
+    B: Named<Real<K>>,
+{
+    fn names(&self, say: &mut dyn FnMut(&str)) {
+        self.first.names(say);
+        self.second.names(say);
     }
 }
 

@@ -1,86 +1,19 @@
 //! Noises by their names in event files.
 
-use std::fmt::Debug;
 use std::marker::PhantomData;
 
+use super::entry::{NoiseEntry, NoiseFor};
 use super::summed::SumEntry;
 use super::{
     Ar, Growth, Iid, Matern32, Noise, Ou, Part, Student, Tails, White, Whole,
 };
 use crate::block::{Block, Field};
 use crate::error::{Error, Stop};
-use crate::scalar::{Grad, Kind, Plain, Real, Reverse};
+use crate::scalar::{Kind, Real};
 
 /// The longest list a noise may have: an order above says that the residuals
 /// are not noise, and costs in the order cubed where values are missing.
 const LONGEST: usize = 20;
-
-/// Builds a noise of number kind `K` from the values of its parameters.
-pub trait NoiseFor<K: Kind> {
-    /// Calls `then` with the noise that has these values, in the order of
-    /// [`NoiseEntry::parameters`].
-    ///
-    /// # Errors
-    /// [`Stop::Fail`], without the call, where they are not as many.
-    fn with(
-        &self,
-        values: &[Real<K>],
-        then: &mut dyn FnMut(&dyn Noise<K>),
-    ) -> Result<(), Stop>;
-
-    /// The same as a summand of a noise.
-    ///
-    /// # Errors
-    /// The same, and where it is none.
-    fn part(
-        &self,
-        values: &[Real<K>],
-        then: &mut dyn FnMut(&dyn Part<K>),
-    ) -> Result<(), Stop>;
-}
-
-/// A noise as an event file names it, its parameters still open.
-pub trait NoiseEntry:
-    NoiseFor<Plain>
-    + NoiseFor<Grad<2>>
-    + NoiseFor<Grad<4>>
-    + NoiseFor<Grad<8>>
-    + NoiseFor<Grad<16>>
-    + NoiseFor<Reverse>
-    + Debug
-    + Send
-    + Sync
-{
-    /// Its name with its argument, such as "ar(2)".
-    fn name(&self) -> String;
-
-    /// The name and field of each parameter; a list of one is called as its
-    /// field (`phi`), a longer one `phi[1]`, `phi[2]` and so on.
-    fn parameters(&self) -> Vec<(String, Field)>;
-
-    /// How many these are.
-    fn dimension(&self) -> usize;
-
-    /// The names of its blocks, without arguments.
-    fn blocks(&self) -> Vec<&'static str>;
-}
-
-/// Kinds that a named noise can be built with.
-pub trait NoiseKind: Kind {
-    /// The noise's builder for this kind of number.
-    fn noise(entry: &dyn NoiseEntry) -> &dyn NoiseFor<Self>;
-}
-
-macro_rules! noise_kind {
-    ($($kind:ty),*) => {
-        $(impl NoiseKind for $kind {
-            fn noise(entry: &dyn NoiseEntry) -> &dyn NoiseFor<Self> {
-                entry
-            }
-        })*
-    };
-}
-noise_kind!(Plain, Grad<2>, Grad<4>, Grad<8>, Grad<16>, Reverse);
 
 /// What a block of the catalogue is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -391,6 +324,7 @@ fn edits(from: &str, to: &str) -> usize {
 mod tests {
     use super::*;
     use crate::noise::Grid;
+    use crate::scalar::{Grad, Plain};
 
     #[test]
     fn names_and_parameters_are_those_of_the_blocks() {

@@ -12,6 +12,7 @@
 mod altered;
 mod ar;
 mod catalogue;
+mod entry;
 mod filter;
 mod gaussian;
 mod grid;
@@ -31,7 +32,8 @@ mod wide;
 pub use altered::{Alteration, Altered};
 pub use ar::Ar;
 pub(crate) use catalogue::is_noise;
-pub use catalogue::{NoiseEntry, NoiseFor, NoiseKind, names, parse};
+pub use catalogue::{names, parse};
+pub use entry::{NoiseEntry, NoiseFor, NoiseKind};
 pub use grid::{Grid, Spacing};
 pub use growth::Growth;
 pub use iid::Iid;

@@ -1,6 +1,6 @@
 //! A sum of blocks as an event file names it.
 
-use super::catalogue::{NoiseEntry, NoiseFor, NoiseKind};
+use super::entry::{NoiseEntry, NoiseFor, NoiseKind};
 use super::{Noise, Whole};
 use crate::block::Field;
 use crate::error::{Error, Stop};

@@ -62,43 +62,83 @@ pub fn attribute<P: Program>(
     };
     let owns = Owns::of(program, &none, &forces)?;
     progress.begin("weighing mechanisms", Some(catalogue.len() as u64));
-    let all: Vec<(usize, &dyn Mechanism)> =
-        catalogue.iter().map(AsRef::as_ref).enumerate().collect();
-    let of = |i: usize| seed.child(1 + i as u64);
-    let looked = all
-        .par_iter()
-        .map(|&(i, mechanism)| {
-            let found = single(program, mechanism, &owns, of(i))
+    let weighing = Weighing { program, catalogue, seed };
+    let looked = weighing.looked(&owns, progress)?;
+    let pursued = weighing.pursued(looked, none.log_evidence)?;
+    let candidates = weighing.fitted(pursued, none.log_evidence)?;
+    Ok(Attribution { none, forces, candidates })
+}
+
+/// Mechanisms that are weighed one by one, in parallel.
+struct Weighing<'a, P> {
+    program: &'a P,
+    catalogue: &'a [Box<dyn Mechanism>],
+    seed: Seed,
+}
+
+impl<P: Program> Weighing<'_, P> {
+    fn seed_of(&self, i: usize) -> Seed {
+        self.seed.child(1 + i as u64)
+    }
+
+    /// What a search finds of each.
+    fn looked(
+        &self,
+        owns: &Owns,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Prospect>> {
+        let all = self.catalogue.par_iter().enumerate();
+        all.map(|(i, mechanism)| {
+            let mechanism = mechanism.as_ref();
+            let found = single(self.program, mechanism, owns, self.seed_of(i))
                 .map_err(|error| error.within(mechanism.name()));
             progress.advance(1);
             found
         })
-        .collect::<Result<Vec<Prospect>>>()?;
-    let highest = |prospects: &[Prospect]| {
-        let logs = prospects.iter().map(Prospect::log);
-        logs.fold(none.log_evidence, f64::max) - IRRELEVANT
-    };
-    let threshold = highest(&looked);
-    let prospects = all
-        .par_iter()
-        .zip(looked)
-        .map(|(&(i, mechanism), looked)| {
-            let seed = of(i).child(3);
-            looked.pursued(program, &[mechanism], threshold, seed)
+        .collect()
+    }
+
+    /// The same after learning more, of those that may matter beside an
+    /// evidence that is known.
+    fn pursued(
+        &self,
+        prospects: Vec<Prospect>,
+        known: f64,
+    ) -> Result<Vec<Prospect>> {
+        let threshold = threshold(&prospects, known);
+        let all = self.catalogue.par_iter().enumerate().zip(prospects);
+        all.map(|((i, mechanism), prospect)| {
+            let seed = self.seed_of(i).child(3);
+            let mechanisms = [mechanism.as_ref()];
+            prospect.pursued(self.program, &mechanisms, threshold, seed)
         })
-        .collect::<Result<Vec<Prospect>>>()?;
-    let threshold = highest(&prospects);
-    let candidates = all
-        .into_par_iter()
-        .zip(prospects)
-        .map(|((i, mechanism), prospect)| {
+        .collect()
+    }
+
+    /// Their fits, sharp where they may matter.
+    fn fitted(
+        &self,
+        prospects: Vec<Prospect>,
+        known: f64,
+    ) -> Result<Vec<Fit>> {
+        let threshold = threshold(&prospects, known);
+        let all = self.catalogue.par_iter().enumerate().zip(prospects);
+        all.map(|((i, mechanism), prospect)| {
+            let (mechanisms, seed) =
+                ([mechanism.as_ref()], self.seed_of(i).child(2));
             let precision = precision(&prospect, threshold);
             prospect
-                .fit(program, &[mechanism], precision, of(i).child(2))
+                .fit(self.program, &mechanisms, precision, seed)
                 .map_err(|error| error.within(mechanism.name()))
         })
-        .collect::<Result<Vec<_>>>()?;
-    Ok(Attribution { none, forces, candidates })
+        .collect()
+    }
+}
+
+/// The evidence, in ln, below which none matters.
+fn threshold(prospects: &[Prospect], known: f64) -> f64 {
+    let logs = prospects.iter().map(Prospect::log);
+    logs.fold(known, f64::max) - IRRELEVANT
 }
 
 /// Where the model's own parameters begin.
