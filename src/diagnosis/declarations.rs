@@ -34,18 +34,31 @@ pub(crate) fn declarations(model: &Assembled) -> Option<[String; 2]> {
     Some([terms.join(" + "), errors])
 }
 
-/// The noise with its priors: `Ar { phi: [Uniform(..)], sigma2: .. }`.
+/// The noise with its priors, `Ar { phi: [Uniform(..)], sigma2: .. }`, or the
+/// sum of its blocks.
 fn errors(
     model: &Assembled,
     priors: &mut impl Iterator<Item = AnyPrior>,
 ) -> Option<String> {
-    let noise = model.noise();
+    let term =
+        |(name, fields): (&str, Vec<Field>)| block(name, &fields, priors);
+    let terms: Option<Vec<_>> =
+        model.noise_terms().into_iter().map(term).collect();
+    terms.map(|terms| terms.join(" + "))
+}
+
+/// A block with its priors; neighbours of one name are a list.
+fn block(
+    name: &str,
+    all: &[Field],
+    priors: &mut impl Iterator<Item = AnyPrior>,
+) -> Option<String> {
     let mut fields: Vec<(Field, Vec<String>)> = Vec::new();
-    for field in model.noise_fields() {
+    for field in all {
         let prior = rust(priors.next()?);
         match fields.last_mut() {
             Some((last, list)) if last.name == field.name => list.push(prior),
-            _ => fields.push((field, vec![prior])),
+            _ => fields.push((*field, vec![prior])),
         }
     }
     let told = |(field, priors): &(Field, Vec<String>)| {
@@ -56,8 +69,7 @@ fn errors(
         }
     };
     let fields: Vec<String> = fields.iter().map(told).collect();
-    let name = camel(noise.split('(').next()?);
-    Some(format!("{name} {{ {} }}", fields.join(", ")))
+    Some(format!("{} {{ {} }}", camel(name), fields.join(", ")))
 }
 
 /// "velocity-weakening" as the struct is called.

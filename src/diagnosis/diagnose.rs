@@ -13,15 +13,15 @@ use crate::diagnosis::decide::judge::{
 use crate::diagnosis::evidence::attribute::{Attribution, attribute};
 use crate::diagnosis::evidence::fit::Fit;
 use crate::diagnosis::findings::{
-    Diagnosis, Judged, ParameterSummary, Verdict,
+    Diagnosis, Judged, LawParameters, ParameterSummary, Verdict,
 };
 use crate::diagnosis::hypothesis::{NONE, UNKNOWN};
-use crate::diagnosis::locate::{FreeForce, free_fit};
+use crate::diagnosis::locate::{FreeForce, free_fit, own_draws};
 use crate::diagnosis::options::Options;
 use crate::diagnosis::tell::paste::corrected;
 use crate::diagnosis::tell::place::{mark, mismatch};
 use crate::diagnosis::together::Sharing;
-use crate::draws::summarise;
+use crate::draws::{Draws, summarise};
 use crate::error::{Error, Result};
 use crate::infer::Progress;
 use crate::mechanism::Mechanism;
@@ -109,6 +109,7 @@ impl<P: Program> Subject<'_, P> {
         let after = corrected_model(chosen.as_ref(), free.as_ref(), all, seed);
         let compared =
             self.compared(&found.none, after.as_ref(), options, seed)?;
+        let law = self.law(&found, &compared, options)?;
         let group = group(&judged);
         let rivals = chosen.as_ref().map(|c| c.rivals(all, &found.none));
         let mut diagnosis = Diagnosis {
@@ -117,6 +118,7 @@ impl<P: Program> Subject<'_, P> {
             separating: separating(&group, &judged),
             group,
             mechanisms: judged,
+            law,
             ..compared
         };
         self.write_out(&mut diagnosis, chosen.as_ref(), &found, options);
@@ -177,6 +179,40 @@ impl<P: Program> Subject<'_, P> {
         }
         let force = most_probable(&found.forces)?;
         free_fit(self.program, &self.extent, force, &found.none).map(Some)
+    }
+
+    /// The law's parameters as they were, corrected, and with the rest of the
+    /// physics left open.
+    fn law(
+        &self,
+        found: &Attribution,
+        compared: &Diagnosis,
+        options: &Options,
+    ) -> Result<LawParameters> {
+        let is_of_law = |p: &ParameterSummary| {
+            let own = p.name.split('[').next().unwrap_or_default();
+            options.law.is_empty() || options.law.iter().any(|law| law == own)
+        };
+        let of = |draws: &Draws| -> Vec<ParameterSummary> {
+            let all = summarise(draws);
+            let all = all.iter().map(ParameterSummary::of);
+            all.filter(|p| is_of_law(p)).collect()
+        };
+        let added = &compared.selected;
+        let is_own = |p: &&ParameterSummary| {
+            !added.iter().any(|name| p.within(name).is_some())
+        };
+        let corrected = compared.parameters.iter().filter(is_own);
+        let corrected = corrected.filter(|p| is_of_law(p)).cloned();
+        let force = most_probable(&found.forces)?;
+        Ok(LawParameters {
+            as_it_was: of(&found.none.draws),
+            corrected: match added.is_empty() {
+                true => Vec::new(),
+                false => corrected.collect(),
+            },
+            with_free_form_force: of(&own_draws(self.program, force)?),
+        })
     }
 
     /// Before, after, and what both predict.

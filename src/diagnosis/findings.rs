@@ -34,6 +34,8 @@ pub struct Diagnosis {
     pub separating: Option<String>,
     /// The corrected model's parameters, the mechanisms' first.
     pub parameters: Vec<ParameterSummary>,
+    /// The friction law's parameters, whatever else may act.
+    pub law: LawParameters,
     /// The corrected model, written out.
     pub corrected: Corrected,
     /// Its posterior draws; those of the model as it was where nothing is
@@ -183,6 +185,20 @@ impl ParameterSummary {
     pub(crate) fn within(&self, mechanism: &str) -> Option<&str> {
         self.name.strip_prefix(mechanism)?.strip_prefix('.')
     }
+}
+
+/// The friction law's parameters: what is missing from a model spoils those
+/// that it has.
+#[derive(Debug, Clone, Default)]
+#[non_exhaustive]
+pub struct LawParameters {
+    /// As calibrated with nothing added.
+    pub as_it_was: Vec<ParameterSummary>,
+    /// With what was selected; empty where nothing is added.
+    pub corrected: Vec<ParameterSummary>,
+    /// With the most probable force of free form in the model: what can be
+    /// said of them when the rest of the physics is left open.
+    pub with_free_form_force: Vec<ParameterSummary>,
 }
 
 /// A mechanism as the evidence judges it.

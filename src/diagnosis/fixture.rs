@@ -2,6 +2,7 @@
 //! from 132 to 187 m.
 
 use super::*;
+use crate::diagnosis::LawParameters;
 use crate::diagnosis::locate::Process;
 use crate::mechanism::catalogue::find;
 use crate::mechanism::{Family, Noun};
@@ -246,6 +247,18 @@ fn mismatch() -> Mismatch {
     }
 }
 
+fn law() -> LawParameters {
+    let of = |mu: (f64, f64), xi: (f64, f64)| {
+        let mu = parameter("mu", "1", mu.0, mu.1);
+        vec![mu, parameter("xi", "m/s2", xi.0, xi.1)]
+    };
+    LawParameters {
+        as_it_was: of((0.26, 0.01), (1050.0, 130.0)),
+        corrected: of((0.213, 0.012), (1410.0, 220.0)),
+        with_free_form_force: of((0.22, 0.03), (1380.0, 310.0)),
+    }
+}
+
 /// A patch of higher friction, found.
 pub(super) fn diagnosis() -> Diagnosis {
     Diagnosis {
@@ -276,6 +289,7 @@ pub(super) fn diagnosis() -> Diagnosis {
             parameter("xi", "m/s2", 1410.0, 220.0),
             parameter("sigma2", "m2/s2", 0.096, 0.015),
         ],
+        law: law(),
         corrected: corrected(),
         draws: None,
         forces: vec![

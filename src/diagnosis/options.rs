@@ -29,6 +29,9 @@ pub struct Options {
     pub blocks: Vec<String>,
     /// The mechanisms that the model has already.
     pub mechanisms: Vec<Arc<dyn Mechanism>>,
+    /// The friction law's parameters, by their names; empty for all that the
+    /// model has of its own.
+    pub law: Vec<String>,
     /// Friction and errors as `model!` declares them, where that is known.
     pub declarations: Option<[String; 2]>,
 }
@@ -48,6 +51,7 @@ impl Options {
             friction: model.friction(),
             noise: model.noise(),
             mechanisms: model.mechanisms().cloned().collect(),
+            law: model.law_names(),
             declarations: declarations(model),
             ..Self::default()
         }
@@ -65,6 +69,11 @@ impl Options {
                     let between = if text.is_empty() { "" } else { " | " };
                     text.push_str(between);
                     text.push_str(&own);
+                }
+            }
+            for name in event.law_names() {
+                if !all.law.contains(&name) {
+                    all.law.push(name);
                 }
             }
             for mechanism in event.mechanisms() {

@@ -190,7 +190,8 @@ impl Assembled {
     pub fn blocks(&self) -> Vec<String> {
         let laws = self.friction.terms().iter().map(|law| law.name());
         let added = self.mechanisms().map(|m| m.name());
-        let all = laws.chain(self.noise.blocks()).chain(added);
+        let noises = self.noise.terms().into_iter().map(|(name, _)| name);
+        let all = laws.chain(noises).chain(added);
         all.map(str::to_owned).collect()
     }
 
@@ -205,9 +206,10 @@ impl Assembled {
         self.noise.dimension()
     }
 
-    /// The field of the noise that each of these is a value of.
-    pub(crate) fn noise_fields(&self) -> impl Iterator<Item = Field> {
-        self.noise.parameters().into_iter().map(|(_, field)| field)
+    /// The name of each block of the noise, with the field that each of its
+    /// parameters is a value of.
+    pub(crate) fn noise_terms(&self) -> Vec<(&'static str, Vec<Field>)> {
+        self.noise.terms()
     }
 
     /// How many of the parameters are the friction law's; they come
@@ -277,6 +279,11 @@ impl Assembled {
     ) -> impl Iterator<Item = (&str, &AnyPrior)> {
         let laws = self.own[..self.laws].iter();
         laws.map(|u| (u.name.as_str(), &u.prior))
+    }
+
+    /// The name of each parameter of the laws.
+    pub(crate) fn law_names(&self) -> Vec<String> {
+        self.law_priors().map(|(name, _)| name.to_owned()).collect()
     }
 
     /// What a parameter is to its mechanism; `Other` where it is of none, or
@@ -351,7 +358,7 @@ impl Assembled {
         errors: &[Real<K>],
     ) -> Outcome {
         let friction = run.declare(self.friction.with(laws));
-        run.has(|say| self.noise.blocks().into_iter().for_each(say));
+        run.has(|say| self.noise.blocks(say));
         let flow = self.event.slide(&friction)?;
         let mut outcome = Ok(());
         K::noise(self.noise.as_ref()).with(errors, &mut |noise| {

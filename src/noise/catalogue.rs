@@ -78,8 +78,14 @@ macro_rules! catalogue {
                 self.expected()
             }
 
-            fn blocks(&self) -> Vec<&'static str> {
-                vec![<$noise<f64> as Block<f64>>::NAME]
+            fn blocks(&self, say: &mut dyn FnMut(&'static str)) {
+                say(<$noise<f64> as Block<f64>>::NAME);
+            }
+
+            fn terms(&self) -> Vec<(&'static str, Vec<Field>)> {
+                let fields = self.all_parameters().into_iter();
+                let fields = fields.map(|(_, field)| field).collect();
+                vec![(<$noise<f64> as Block<f64>>::NAME, fields)]
             }
         }
     };

@@ -53,8 +53,12 @@ pub trait NoiseEntry:
     /// How many these are.
     fn dimension(&self) -> usize;
 
-    /// The names of its blocks, without arguments.
-    fn blocks(&self) -> Vec<&'static str>;
+    /// Hands the name of each of its blocks, without arguments, to `say`.
+    fn blocks(&self, say: &mut dyn FnMut(&'static str));
+
+    /// The name of each of its blocks, with the field that each parameter of
+    /// that is a value of.
+    fn terms(&self) -> Vec<(&'static str, Vec<Field>)>;
 }
 
 /// Kinds that a named noise can be built with.

@@ -19,7 +19,8 @@ impl NoiseEntry for SumEntry {
     /// A name that two blocks share gets its block's before it.
     fn parameters(&self) -> Vec<(String, Field)> {
         let of = |part: &dyn NoiseEntry| {
-            let block = part.blocks().concat();
+            let mut block = String::new();
+            part.blocks(&mut |name| block.push_str(name));
             let named = part.parameters().into_iter();
             named.map(move |(name, field)| (block.clone(), name, field))
         };
@@ -40,8 +41,12 @@ impl NoiseEntry for SumEntry {
         self.0.iter().map(|part| part.dimension()).sum()
     }
 
-    fn blocks(&self) -> Vec<&'static str> {
-        self.0.iter().flat_map(|part| part.blocks()).collect()
+    fn blocks(&self, say: &mut dyn FnMut(&'static str)) {
+        self.0.iter().for_each(|part| part.blocks(say));
+    }
+
+    fn terms(&self) -> Vec<(&'static str, Vec<Field>)> {
+        self.0.iter().flat_map(|part| part.terms()).collect()
     }
 }
 

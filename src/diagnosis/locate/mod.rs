@@ -63,10 +63,7 @@ pub(crate) fn free_fit<P: Program>(
         .par_iter()
         .map(|line| posterior.natural(line))
         .collect::<Result<Vec<_>>>()?;
-    let mut draws = Draws::new(
-        posterior.parameters().iter().map(|p| p.name.clone()).collect(),
-        posterior.parameters().iter().map(|p| p.unit.clone()).collect(),
-    )?;
+    let mut draws = empty(&posterior)?;
     draws.push_chain(rows.concat(), None)?;
     let fit = Fit {
         log_evidence: none.log_evidence + force.log_bayes_factor,
@@ -77,6 +74,31 @@ pub(crate) fn free_fit<P: Program>(
         warnings: none.warnings.clone(),
     };
     Ok((Box::new(free), fit))
+}
+
+/// Draws of the model's own parameters with a force of free form in it.
+///
+/// # Errors
+/// A model that fails.
+pub(crate) fn own_draws<P: Program>(
+    program: &P,
+    force: &FreeForce,
+) -> Result<Draws> {
+    let with = With::new(program, &[]);
+    let posterior = Posterior::new(&with)?;
+    let rows = force.own.iter().map(|line| posterior.natural(line));
+    let rows = rows.collect::<Result<Vec<_>>>()?;
+    let mut draws = empty(&posterior)?;
+    draws.push_chain(rows.concat(), None)?;
+    Ok(draws)
+}
+
+fn empty(posterior: &Posterior<'_>) -> Result<Draws> {
+    let parameters = posterior.parameters().iter();
+    Draws::new(
+        parameters.clone().map(|p| p.name.clone()).collect(),
+        parameters.map(|p| p.unit.clone()).collect(),
+    )
 }
 
 /// What is known of the free-form force along one axis.

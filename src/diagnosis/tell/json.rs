@@ -6,8 +6,8 @@ use serde_json::{Map, Value, json};
 
 use crate::diagnosis::locate::FreeForce;
 use crate::diagnosis::{
-    Baseline, Corrected, Diagnosis, Improvement, Judged, Mismatch,
-    ParameterSummary, Rival,
+    Baseline, Corrected, Diagnosis, Improvement, Judged, LawParameters,
+    Mismatch, ParameterSummary, Rival,
 };
 use crate::physics::forces::Axis;
 
@@ -28,6 +28,14 @@ fn parameters_json(parameters: &[ParameterSummary]) -> Value {
         (p.name.clone(), value)
     };
     Value::Object(parameters.iter().map(entry).collect())
+}
+
+fn law_json(law: &LawParameters) -> Value {
+    json!({
+        "as_it_was": parameters_json(&law.as_it_was),
+        "corrected": parameters_json(&law.corrected),
+        "with_free_form_force": parameters_json(&law.with_free_form_force),
+    })
 }
 
 fn mismatch_json(m: &Mismatch) -> Value {
@@ -143,6 +151,7 @@ impl Diagnosis {
             "rivals": list(&self.rivals, rival_json),
             "improvement": improvement_json(&self.improvement),
             "parameters": parameters_json(&self.parameters),
+            "law": law_json(&self.law),
             "corrected": corrected_json(&self.corrected),
             "forces": list(&self.forces, force_json),
             "separating": self.separating,

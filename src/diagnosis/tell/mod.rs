@@ -1,6 +1,7 @@
 //! A diagnosis as words, tables, pictures, a page, and a model to paste.
 
 mod json;
+mod law;
 #[cfg(feature = "pages")]
 pub(crate) mod page;
 pub(crate) mod paste;

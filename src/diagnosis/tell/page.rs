@@ -2,13 +2,11 @@
 
 use maud::{Markup, PreEscaped, html};
 
-use crate::diagnosis::tell::phrases::friction;
+use crate::diagnosis::tell::phrases::{friction, interval, is_corrected};
 use crate::diagnosis::tell::pictures::{Figure, bars, forces, of_event};
-use crate::diagnosis::tell::words::{
-    before_and_after, in_words, is_corrected,
-};
+use crate::diagnosis::tell::words::{before_and_after, in_words};
 use crate::diagnosis::{
-    Diagnosis, Hypothesis, ParameterSummary, Pictured, Verdict,
+    Diagnosis, Hypothesis, LawParameters, ParameterSummary, Pictured, Verdict,
 };
 use crate::report::digits::{beside, significant};
 use crate::report::standalone;
@@ -242,6 +240,7 @@ fn parameters(d: &Diagnosis) -> Markup {
             } }
             tbody { @for p in &d.parameters { (row(p)) } }
         } }
+        (law(d))
         p.note {
             "Of the posterior: sd, the standard deviation; the interval \
              from the 5 % to the 95 % quantile."
@@ -249,14 +248,56 @@ fn parameters(d: &Diagnosis) -> Markup {
     }
 }
 
+/// The law's parameters in three models, side by side.
+fn law(d: &Diagnosis) -> Markup {
+    let LawParameters { as_it_was, corrected, with_free_form_force } = &d.law;
+    if with_free_form_force.is_empty() {
+        return html! {};
+    }
+    let of = |all: &[ParameterSummary], name: &str| {
+        let found = all.iter().find(|p| p.name == name);
+        let told = |p: &ParameterSummary| {
+            format!("{} ({})", beside(p.q50, p.sd), interval(p))
+        };
+        found.map_or("–".to_owned(), told).replace('-', "−")
+    };
+    html! {
+        h3 { "The friction law, whatever else acts" }
+        div.wide { table {
+            thead { tr {
+                @for heading in
+                    ["parameter", "as it was", "corrected", "with any force"]
+                {
+                    th scope="col" { (heading) }
+                }
+            } }
+            tbody { @for p in as_it_was {
+                tr {
+                    td.name { (named(p)) }
+                    @for all in
+                        [as_it_was, corrected, with_free_form_force]
+                    {
+                        td { (of(all, &p.name)) }
+                    }
+                }
+            } }
+        } }
+    }
+}
+
+/// A parameter's name with its unit.
+fn named(p: &ParameterSummary) -> String {
+    match unit(&p.unit).as_str() {
+        "" => plain(&p.name),
+        unit => format!("{} [{unit}]", plain(&p.name)),
+    }
+}
+
 fn row(p: &ParameterSummary) -> Markup {
     let number = |x: f64| beside(x, p.sd).replace('-', "−");
     html! {
         tr {
-            td.name {
-                (plain(&p.name))
-                @if !unit(&p.unit).is_empty() { " [" (unit(&p.unit)) "]" }
-            }
+            td.name { (named(p)) }
             td { (number(p.q50)) }
             td { (number(p.mean)) }
             td { (number(p.sd)) }

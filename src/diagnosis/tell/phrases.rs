@@ -7,6 +7,11 @@ use crate::physics::forces::Axis;
 use crate::report::digits::{beside, short, significant};
 use crate::report::text::{is_synthetic, plain, unit};
 
+/// Whether there is a corrected model to compare with.
+pub(crate) fn is_corrected(d: &Diagnosis) -> bool {
+    !d.selected.is_empty()
+}
+
 /// A mechanism as a snow scientist would call it.
 pub(crate) fn called(m: &Judged) -> String {
     plain(&m.noun.words)

@@ -1,11 +1,9 @@
 //! A diagnosis in a terminal: words, tables and the corrected equation.
 
 use crate::diagnosis::tell::phrases::{
-    interval, log10, own_name, probability, with_unit,
+    interval, is_corrected, log10, own_name, probability, with_unit,
 };
-use crate::diagnosis::tell::words::{
-    Row, before_and_after, in_words, is_corrected,
-};
+use crate::diagnosis::tell::words::{Row, before_and_after, in_words};
 use crate::diagnosis::{Diagnosis, Judged};
 use crate::report::digits::beside;
 use crate::report::text::{plain, shorten, wrap};

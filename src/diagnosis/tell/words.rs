@@ -1,8 +1,10 @@
 //! A diagnosis in sentences that a snow scientist can check.
 
+use crate::diagnosis::tell::law::law;
 use crate::diagnosis::tell::phrases::{
-    all_called, amounts, called, capital, event, friction, interval, judged,
-    log10, model, own_name, probability, range, stretch, with_unit,
+    all_called, amounts, called, capital, event, friction, interval,
+    is_corrected, judged, log10, model, own_name, probability, range, stretch,
+    with_unit,
 };
 use crate::diagnosis::tell::signs::either_sign;
 use crate::diagnosis::{
@@ -24,7 +26,7 @@ const RIVAL: f64 = 0.01;
 /// How many stretches, and how many parts of one, are told.
 const TOLD: usize = 2;
 
-/// The diagnosis in five to ten plain sentences.
+/// The diagnosis in five to eleven plain sentences.
 ///
 /// ```
 /// use couloir::diagnosis::{Diagnosis, in_words};
@@ -38,6 +40,7 @@ pub fn in_words(d: &Diagnosis) -> Vec<String> {
         said.push(residuals(&d.baseline));
         said.extend(nearest(d));
         said.push(silence());
+        said.extend(law(d));
     } else {
         said.extend(d.mismatch.iter().take(TOLD).map(|m| difference(d, m)));
         said.push(explanation(d));
@@ -50,6 +53,7 @@ pub fn in_words(d: &Diagnosis) -> Vec<String> {
             said.push(uncorrected(d));
             said.push(residuals(&d.baseline));
         }
+        said.extend(law(d));
         said.extend(ambiguity(d));
     }
     said.extend(trap(d));
@@ -479,11 +483,6 @@ pub(crate) struct Row {
     pub(crate) before: String,
     /// Of the corrected one.
     pub(crate) after: String,
-}
-
-/// Whether there is a corrected model to compare with.
-pub(crate) fn is_corrected(d: &Diagnosis) -> bool {
-    !d.selected.is_empty()
 }
 
 /// Before and after, line by line.

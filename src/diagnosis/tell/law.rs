@@ -1,0 +1,124 @@
+//! The friction law's parameters in words: as they were, corrected, and with
+//! the rest of the physics left open.
+
+use crate::diagnosis::tell::phrases::{
+    interval, is_corrected, joined, with_unit,
+};
+use crate::diagnosis::{Diagnosis, ParameterSummary, Verdict};
+use crate::report::digits::beside;
+use crate::report::text::plain;
+
+/// How many parameters are told.
+const TOLD: usize = 2;
+
+/// What to use for the law's parameters; `None` where nothing is known of
+/// them.
+pub(super) fn law(d: &Diagnosis) -> Option<String> {
+    let law = &d.law;
+    let open = &law.with_free_form_force;
+    if open.is_empty() || law.as_it_was.is_empty() {
+        return None;
+    }
+    let [was, left_open] =
+        [&law.as_it_was, open].map(|all| values(all, false));
+    let many = open.len() > 1;
+    let (they_are, value) =
+        if many { ("they are", "values") } else { ("it is", "value") };
+    if d.verdict == Verdict::Unexplained {
+        let named = values(open, true);
+        return Some(format!(
+            "With a force of free form in the model {named}, instead of {was} \
+             without it: use the {value} with the force."
+        ));
+    }
+    let (told, begin) = match is_corrected(d) {
+        true => (&law.corrected, "In the corrected model "),
+        false => (&law.as_it_was, "As calibrated, "),
+    };
+    let instead = match is_corrected(d) {
+        true => format!(", instead of {was}"),
+        false => String::new(),
+    };
+    let end = match (agree(told, open), is_corrected(d)) {
+        (true, true) => format!("that agrees, so use the corrected {value}"),
+        (true, false) => format!("that agrees, so use the calibrated {value}"),
+        (false, _) => {
+            format!("that does not agree, so use the {value} with the force")
+        }
+    };
+    Some(format!(
+        "{begin}{}{instead}. With a force of free form, which leaves the rest \
+         of the physics open, {they_are} {left_open}: {end}.",
+        values(told, true)
+    ))
+}
+
+/// "mu is 0.31 (0.29 to 0.33) and xi is ..", or the values alone.
+fn values(all: &[ParameterSummary], named: bool) -> String {
+    let value = |p: &ParameterSummary| {
+        let middle = with_unit(&beside(p.q50, p.sd), &p.unit);
+        let value = format!("{middle} ({})", interval(p));
+        match named {
+            true => format!("{} is {value}", plain(&p.name)),
+            false => value,
+        }
+    };
+    let all: Vec<String> = all.iter().take(TOLD).map(value).collect();
+    joined(&all, "and")
+}
+
+/// Whether each is within what is likely of it when the rest is left open.
+fn agree(told: &[ParameterSummary], open: &[ParameterSummary]) -> bool {
+    told.iter()
+        .zip(open)
+        .all(|(p, open)| (open.q05..=open.q95).contains(&p.q50))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::LawParameters;
+
+    fn mu(q05: f64, q50: f64, q95: f64) -> Vec<ParameterSummary> {
+        let (name, unit) = ("mu".to_owned(), "1".to_owned());
+        let sd = (q95 - q05) / 3.29;
+        vec![ParameterSummary { name, unit, mean: q50, sd, q05, q50, q95 }]
+    }
+
+    fn diagnosis(verdict: Verdict, corrected: Option<f64>) -> Diagnosis {
+        let selected = corrected.map(|_| "surge".to_owned());
+        Diagnosis {
+            verdict,
+            selected: selected.into_iter().collect(),
+            law: LawParameters {
+                as_it_was: mu(0.19, 0.2, 0.21),
+                corrected: corrected
+                    .map_or(Vec::new(), |x| mu(x - 0.01, x, x + 0.01)),
+                with_free_form_force: mu(0.25, 0.3, 0.36),
+            },
+            ..Diagnosis::default()
+        }
+    }
+
+    #[test]
+    fn the_words_say_which_to_use() {
+        let told = |verdict, corrected| {
+            law(&diagnosis(verdict, corrected)).unwrap_or_default()
+        };
+        let fits = told(Verdict::MissingPhysics, Some(0.31));
+        assert!(fits.starts_with("In the corrected model mu is 0.31"));
+        let was = "instead of 0.2000 (0.1900 to 0.2100)";
+        assert!(fits.contains(was), "{fits}");
+        assert!(fits.contains("it is 0.300 (0.250 to 0.360): that agrees"));
+        assert!(fits.ends_with("use the corrected value."), "{fits}");
+        let off = told(Verdict::MissingPhysics, Some(0.24));
+        assert!(off.ends_with("use the value with the force."), "{off}");
+        let alone = told(Verdict::Adequate, None);
+        assert!(alone.starts_with("As calibrated, mu is 0.2"), "{alone}");
+        assert!(alone.ends_with("use the value with the force."), "{alone}");
+        let open = told(Verdict::Unexplained, Some(0.3));
+        assert!(open.starts_with("With a force of free form"), "{open}");
+        let nothing = Diagnosis::default();
+        assert!(law(&nothing).is_none());
+    }
+}
