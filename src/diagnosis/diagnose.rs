@@ -204,14 +204,14 @@ impl<P: Program> Subject<'_, P> {
         };
         let corrected = compared.parameters.iter().filter(is_own);
         let corrected = corrected.filter(|p| is_of_law(p)).cloned();
-        let force = most_probable(&found.forces)?;
+        let open = own_draws(self.program, &found.forces)?;
         Ok(LawParameters {
             as_it_was: of(&found.none.draws),
             corrected: match added.is_empty() {
                 true => Vec::new(),
                 false => corrected.collect(),
             },
-            with_free_form_force: of(&own_draws(self.program, force)?),
+            with_free_form_force: of(&open),
         })
     }
 

@@ -196,8 +196,8 @@ pub struct LawParameters {
     pub as_it_was: Vec<ParameterSummary>,
     /// With what was selected; empty where nothing is added.
     pub corrected: Vec<ParameterSummary>,
-    /// With the most probable force of free form in the model: what can be
-    /// said of them when the rest of the physics is left open.
+    /// With a force of free form in the model, along any axis: what can be said
+    /// of them when the rest of the physics is left open.
     pub with_free_form_force: Vec<ParameterSummary>,
 }
 

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::adapt::{fitted, reweighted};
 use super::proposal::{Base, Mixture, Particle};
-use super::weights::{Sum, log_mean_weight, quality, summed};
+use super::weights::{Sum, cut, log_mean_weight, quality, summed, systematic};
 use crate::error::Result;
 use crate::model::Posterior;
 use crate::seed::{Rng, Seed};
@@ -86,6 +86,18 @@ impl<R> Integral<R> {
             rest.as_ref().map(|rest| (&particle.z[..], rest))
         });
         whole.collect()
+    }
+}
+
+impl<R> Integral<R> {
+    /// So many even draws of the outer coordinates by weights that are cut:
+    /// where few draws weigh most, these say how wide they lie, and lean to
+    /// the proposal, which is wider.
+    pub(crate) fn spread(&self, count: usize, seed: Seed) -> Vec<&[f64]> {
+        let all = self.found.iter().map(|(particle, _)| particle.clone());
+        let weights = cut(&all.collect::<Vec<_>>());
+        let chosen = systematic(&weights, count, &mut seed.rng()).into_iter();
+        chosen.map(|i| &self.found[i].0.z[..]).collect()
     }
 }
 

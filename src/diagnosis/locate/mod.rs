@@ -17,7 +17,7 @@ mod tangent;
 use rayon::prelude::*;
 
 use crate::diagnosis::evidence::fit::{Fit, likeliest};
-use crate::draws::{Draws, median};
+use crate::draws::{Draws, log_sum_exp, median};
 use crate::error::Result;
 use crate::infer::nested::{Effort, Integral, Learned, integrated, learn};
 use crate::mechanism::{Extent, Mechanism};
@@ -36,6 +36,8 @@ use tangent::Cells;
 /// How many draws of the process and the model's own parameters are made.
 const EFFORT: Effort =
     Effort { learning: 60, rounds: 3, last: (150, 600), error: 0.1 };
+/// How many draws of the model's own parameters are told of.
+const OWN: usize = 400;
 /// The same along an axis whose force is far less likely than along another,
 /// by so much in ln.
 const FEW: Effort = Effort { last: (60, 60), ..EFFORT };
@@ -76,18 +78,26 @@ pub(crate) fn free_fit<P: Program>(
     Ok((Box::new(free), fit))
 }
 
-/// Draws of the model's own parameters with a force of free form in it.
+/// Draws of the model's own parameters with a force of free form in it, along
+/// each axis as often as it is probable.
 ///
 /// # Errors
 /// A model that fails.
 pub(crate) fn own_draws<P: Program>(
     program: &P,
-    force: &FreeForce,
+    forces: &[FreeForce],
 ) -> Result<Draws> {
     let with = With::new(program, &[]);
     let posterior = Posterior::new(&with)?;
-    let rows = force.own.iter().map(|line| posterior.natural(line));
-    let rows = rows.collect::<Result<Vec<_>>>()?;
+    let total = log_sum_exp(forces.iter().map(|f| f.log_bayes_factor));
+    let of = |force: &FreeForce| -> Result<Vec<Vec<f64>>> {
+        let share = (force.log_bayes_factor - total).exp();
+        let count = (share * OWN as f64).round() as usize;
+        // Even draws in any order: every so-manyth is a share of all.
+        let every = (0..count).map(|i| i * force.spread.len() / count);
+        every.map(|i| posterior.natural(&force.spread[i])).collect()
+    };
+    let rows = forces.iter().map(of).collect::<Result<Vec<_>>>()?.concat();
     let mut draws = empty(&posterior)?;
     draws.push_chain(rows.concat(), None)?;
     Ok(draws)
@@ -118,6 +128,8 @@ pub struct FreeForce {
     pub draws: Vec<Vec<f64>>,
     /// The model's own parameters, on the real line, of each draw.
     pub(crate) own: Vec<Vec<f64>>,
+    /// The same of draws by weights that are cut, [`OWN`] of them.
+    pub(crate) spread: Vec<Vec<f64>>,
     /// ln of its evidence over that of the model without it.
     pub log_bayes_factor: f64,
     /// The standard error of that.
@@ -208,6 +220,7 @@ impl FreeForce {
         let cell = range.span / CELLS as f64;
         let at = (0..CELLS).map(|i| range.begin + (i as f64 + 0.5) * cell);
         let chosen = found.draws(seed);
+        let spread = found.spread(OWN, seed.child(1)).into_iter();
         let each = chosen.iter();
         let own = |z: &[f64], n: usize| vec![z[2..].to_vec(); n];
         let draws: Vec<Vec<f64>> =
@@ -219,6 +232,7 @@ impl FreeForce {
             width: simultaneous(&draws, &mean, &sd),
             mean,
             sd,
+            spread: spread.map(|z| z[2..].to_vec()).collect(),
             own: each.clone().flat_map(|(z, f)| own(z, f.len())).collect(),
             log_bayes_factor: found.sum.log - none.log_evidence,
             se: found.sum.se,

@@ -260,6 +260,7 @@ mod tests {
             log_bayes_factor: 0.0,
             se: 0.0,
             own: vec![],
+            spread: vec![],
             process: Process(0.0, 0.0),
         }
     }
