@@ -152,7 +152,7 @@ fn place<K: Kind, const N: usize>(
     states: usize,
     block: &Square<K>,
 ) {
-    for (i, row) in block.chunks_exact(states).enumerate() {
+    for (i, row) in block.chunks_exact(states.max(1)).enumerate() {
         matrix[first + i][first..first + states].copy_from_slice(row);
     }
 }
