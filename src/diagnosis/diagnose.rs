@@ -190,8 +190,11 @@ impl<P: Program> Subject<'_, P> {
         options: &Options,
     ) -> Result<LawParameters> {
         let is_of_law = |p: &ParameterSummary| {
+            // "mu" of "mu", of "mu[1]", and of an event's "C10.mu".
             let own = p.name.split('[').next().unwrap_or_default();
-            options.law.is_empty() || options.law.iter().any(|law| law == own)
+            let bare = own.rsplit('.').next().unwrap_or_default();
+            let known = |law: &String| law == own || law == bare;
+            options.law.is_empty() || options.law.iter().any(known)
         };
         let of = |draws: &Draws| -> Vec<ParameterSummary> {
             let all = summarise(draws);

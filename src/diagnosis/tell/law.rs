@@ -12,11 +12,12 @@ use crate::report::text::plain;
 const TOLD: usize = 2;
 
 /// What to use for the law's parameters; `None` where nothing is known of
-/// them.
+/// them, or several events have each their own: the page has these.
 pub(super) fn law(d: &Diagnosis) -> Option<String> {
     let law = &d.law;
     let open = &law.with_free_form_force;
-    if open.is_empty() || law.as_it_was.is_empty() {
+    let several = d.pictured.len() > 1;
+    if open.is_empty() || law.as_it_was.is_empty() || several {
         return None;
     }
     let [was, left_open] =
