@@ -8,11 +8,9 @@ use std::ops::Deref;
 
 use crate::block::{Named, Sum};
 use crate::context::Context;
-use crate::error::Stop;
 use crate::mechanism::Change;
-use crate::noise::{Conditional, Grid, Noise, Stationary};
+use crate::noise::{Noise, noise_like};
 use crate::scalar::{Kind, Real};
-use crate::seed::Rng;
 
 /// A block declared by a model, with the context it is evaluated in.
 #[derive(Debug)]
@@ -72,49 +70,8 @@ where
     }
 }
 
-/// A declared noise scores as its block does, and so does a borrowed one.
-macro_rules! score_like {
-    ($noise:ident, $self:ident, $inner:expr, $of:ty) => {
-        impl<K: Kind, $noise: Noise<K> + ?Sized> Noise<K> for $of {
-            fn check(&$self, at: &Grid) -> crate::Result<()> {
-                $inner.check(at)
-            }
-            #[inline]
-            fn walk(
-                &$self,
-                at: &Grid,
-                residuals: &[Real<K>],
-                visit: &mut dyn FnMut(Conditional<K>),
-            ) -> Result<(), Stop> {
-                $inner.walk(at, residuals, visit)
-            }
-            fn draw(
-                &$self,
-                at: &Grid,
-                rng: &mut Rng,
-            ) -> Result<Vec<f64>, Stop> {
-                $inner.draw(at, rng)
-            }
-            #[inline]
-            fn log_likelihood(
-                &$self,
-                at: &Grid,
-                residuals: &[Real<K>],
-            ) -> Result<Real<K>, Stop> {
-                $inner.log_likelihood(at, residuals)
-            }
-            #[inline]
-            fn width(&$self, predicted: Real<K>) -> Option<Real<K>> {
-                $inner.width(predicted)
-            }
-            fn standardise(&$self, deviate: f64) -> f64 {
-                $inner.standardise(deviate)
-            }
-            fn stationary(&$self) -> Option<Stationary> {
-                $inner.stationary()
-            }
-        }
-    };
+// A declared noise scores as its block does, and so does a borrowed one.
+noise_like!(impl[N: Noise<K> + ?Sized] &N, self => (**self));
+noise_like! {
+    impl[N: Noise<K> + ?Sized] Declared<'_, K, N>, self => self.block
 }
-score_like!(N, self, (**self), &N);
-score_like!(N, self, self.block, Declared<'_, K, N>);

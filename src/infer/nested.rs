@@ -87,9 +87,7 @@ impl<R> Integral<R> {
         });
         whole.collect()
     }
-}
 
-impl<R> Integral<R> {
     /// So many even draws of the outer coordinates by weights that are cut:
     /// where few draws weigh most, these say how wide they lie, and lean to
     /// the proposal, which is wider.

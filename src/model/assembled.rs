@@ -7,13 +7,14 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::added::Added;
+use super::default_prior::{default_prior, is_uneven};
 use super::number::Number;
 use super::program::Program;
 use super::run::Run;
 use crate::block::{Field, List};
 use crate::error::{Error, Outcome, Result, Stop};
 use crate::mechanism::{Change, Mechanism, Role, Unknown};
-use crate::noise::{self, NoiseEntry, Spacing};
+use crate::noise::{self, NoiseEntry};
 use crate::observe::{Event, Quantity};
 use crate::physics::friction::LawSum;
 use crate::physics::{Rest, State};
@@ -419,58 +420,6 @@ fn unit_of(field: &Field, quantity: Quantity) -> &'static str {
         "value2" => quantity.squared_unit(),
         unit => unit,
     }
-}
-
-fn is_uneven(event: &Event) -> bool {
-    event.recordings().any(|s| *s.grid().spacing() == Spacing::Uneven)
-}
-
-/// The block's default; on uneven times an autocorrelation is positive.
-fn default_prior(field: &Field, event: &Event) -> Result<AnyPrior> {
-    let text = match field.name {
-        "phi" if is_uneven(event) => "Uniform(0, 1)",
-        _ => field.prior,
-    };
-    AnyPrior::parse(&scaled(text, event))
-}
-
-/// A block's default with the scales of an event put in: `size`, the largest
-/// value recorded, its square `size2`, and the `duration` of the recording
-/// \[s\], each after a number, and after `ln` where a logarithm is meant.
-fn scaled(text: &str, event: &Event) -> String {
-    let (mut size, mut duration) = (0.0_f64, 0.0_f64);
-    for series in event.recordings() {
-        let sizes = series.values().iter().map(|v| v.abs());
-        size = sizes.fold(size, f64::max);
-        let times = series.times();
-        let last = times.last().zip(times.first()).map_or(0.0, |(b, a)| b - a);
-        duration = duration.max(last);
-    }
-    let or_one = |x: f64| if x > 0.0 { x } else { 1.0 };
-    let (size, duration) = (or_one(size), or_one(duration));
-    let scale = |word: &str| match word {
-        "size" => Some(size),
-        "size2" => Some(size * size),
-        "duration" => Some(duration),
-        _ => None,
-    };
-    let Some((name, arguments)) = text.split_once('(') else {
-        return text.to_owned();
-    };
-    let of = |argument: &str| {
-        let (is_log, rest) = match argument.strip_prefix("ln ") {
-            Some(rest) => (true, rest),
-            None => (false, argument),
-        };
-        let (number, word) = rest.split_once(' ')?;
-        let value = number.parse::<f64>().ok()? * scale(word)?;
-        let value = if is_log { value.ln() } else { value };
-        Some(format!("{value:.3}"))
-    };
-    let arguments = arguments.trim_end_matches(')').split(',').map(str::trim);
-    let all: Vec<String> =
-        arguments.map(|a| of(a).unwrap_or_else(|| a.to_owned())).collect();
-    format!("{name}({})", all.join(", "))
 }
 
 /// Uneven times have a correlated noise only in its continuous form, whose

@@ -11,6 +11,7 @@ mod alone;
 mod amount;
 mod assembled;
 mod blocks;
+mod default_prior;
 mod density;
 mod fisher;
 mod gradient;

@@ -226,7 +226,7 @@ pub fn parse(text: &str) -> crate::Result<Box<dyn NoiseEntry>> {
         };
     }
     let mut parts = Vec::with_capacity(terms.len());
-    let mut known: Vec<&str> = Vec::new();
+    let mut known: Vec<&Listed> = Vec::new();
     for term in terms {
         let (noise, entry) = block(term)?;
         if let Some(mend) = noise.no_summand() {
@@ -235,18 +235,17 @@ pub fn parse(text: &str) -> crate::Result<Box<dyn NoiseEntry>> {
                 noise.name
             )));
         }
-        if known.contains(&noise.name) {
+        if known.iter().any(|other| other.name == noise.name) {
             return Err(Error::input(format!(
                 "\"{}\" is in the noise twice; expected each block once: \
                  drop one of them",
                 noise.name
             )));
         }
-        known.push(noise.name);
+        known.push(noise);
         parts.push(entry);
     }
-    let shapes = |name: &&str| ["tails", "growth"].contains(name);
-    if known.iter().all(shapes) {
+    if known.iter().all(|noise| noise.role == Role::Summand) {
         return Err(Error::input(format!(
             "\"{text}\" shapes errors that no block makes; add one, such as \
              white"

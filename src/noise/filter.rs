@@ -9,9 +9,11 @@ use rand_distr::{Distribution, StandardNormal, StudentT};
 use smallvec::SmallVec;
 
 use super::gaussian::Gaussian;
-use super::part::{Lapse, MOST_STATES, Square, Whole};
+use super::like::noise_like;
+use super::part::{Lapse, MOST_STATES, Part, Square, Whole};
 use super::student::{Law, log_peak, normal_score};
-use super::{Conditional, Grid, Noise, one_per_time};
+use super::{Conditional, Grid, Matern32, Noise, Ou, White, one_per_time};
+use crate::block::Sum;
 use crate::error::Stop;
 use crate::prior::LN_SQRT_2PI;
 use crate::scalar::{Kind, Real};
@@ -345,53 +347,10 @@ impl<K: Kind> Noise<K> for Whole<'_, K> {
     }
 }
 
-/// Makes a block, or a sum of blocks, the noise that its parts say.
-macro_rules! noise_of_parts {
-    ($(impl[$($name:ident),*] $block:ty;)*) => {$(
-        impl<K: Kind, $($name: Part<K>),*> Noise<K> for $block {
-            fn check(&self, at: &Grid) -> crate::Result<()> {
-                Whole::<K>::of(self).check(at)
-            }
-
-            fn walk(
-                &self,
-                at: &Grid,
-                residuals: &[Real<K>],
-                visit: &mut dyn FnMut(Conditional<K>),
-            ) -> Result<(), Stop> {
-                Whole::of(self).walk(at, residuals, visit)
-            }
-
-            fn log_likelihood(
-                &self,
-                at: &Grid,
-                residuals: &[Real<K>],
-            ) -> Result<Real<K>, Stop> {
-                Whole::of(self).log_likelihood(at, residuals)
-            }
-
-            fn draw(
-                &self,
-                at: &Grid,
-                rng: &mut Rng,
-            ) -> Result<Vec<f64>, Stop> {
-                Whole::<K>::of(self).draw(at, rng)
-            }
-
-            fn standardise(&self, deviate: f64) -> f64 {
-                Whole::<K>::of(self).standardise(deviate)
-            }
-        }
-    )*};
-}
-
-use super::part::Part;
-use super::{Matern32, Ou, White};
-use crate::block::Sum;
-
-noise_of_parts! {
-    impl[] White<Real<K>>;
-    impl[] Ou<Real<K>>;
-    impl[] Matern32<Real<K>>;
-    impl[A, B] Sum<A, B>;
+// A block, or a sum of blocks, is the noise that its parts say.
+noise_like!(impl[] White<Real<K>>, self => Whole::<K>::of(self));
+noise_like!(impl[] Ou<Real<K>>, self => Whole::<K>::of(self));
+noise_like!(impl[] Matern32<Real<K>>, self => Whole::<K>::of(self));
+noise_like! {
+    impl[A: Part<K>, B: Part<K>] Sum<A, B>, self => Whole::<K>::of(self)
 }

@@ -50,11 +50,10 @@ fn misfit(report: &CalibrationReport) -> Option<String> {
     }
     let pairs = report.values.iter().zip(&report.bands.median);
     let misses: Vec<f64> = pairs.map(|(value, flow)| value - flow).collect();
-    let square = |x: &f64| x * x;
-    let all = misses.iter().map(square).sum::<f64>() / misses.len() as f64;
     let news = misses.windows(2).map(|w| 0.5 * (w[1] - w[0]).powi(2));
     let news = news.sum::<f64>() / (misses.len() as f64 - 1.0);
-    let times = (all / news).sqrt();
+    let rmse = report.bands.rmse(&report.values);
+    let times = rmse / news.sqrt();
     if !(times.is_finite() && times > SMOOTH) {
         return None;
     }
@@ -63,7 +62,7 @@ fn misfit(report: &CalibrationReport) -> Option<String> {
         "This model does not fit: its flow misses the recording by {} {unit}, \
          {} times what changes from one value to the next; `couloir diagnose` \
          says what may be missing.",
-        significant(all.sqrt(), 2),
+        significant(rmse, 2),
         significant(times, 2)
     ))
 }

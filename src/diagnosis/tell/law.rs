@@ -32,18 +32,19 @@ pub(super) fn law(d: &Diagnosis) -> Option<String> {
              without it: use the {value} with the force."
         ));
     }
-    let (told, begin) = match is_corrected(d) {
-        true => (&law.corrected, "In the corrected model "),
-        false => (&law.as_it_was, "As calibrated, "),
+    let (told, begin, instead, which) = match is_corrected(d) {
+        true => {
+            let instead = format!(", instead of {was}");
+            (&law.corrected, "In the corrected model ", instead, "corrected")
+        }
+        false => {
+            let nothing = String::new();
+            (&law.as_it_was, "As calibrated, ", nothing, "calibrated")
+        }
     };
-    let instead = match is_corrected(d) {
-        true => format!(", instead of {was}"),
-        false => String::new(),
-    };
-    let end = match (agree(told, open), is_corrected(d)) {
-        (true, true) => format!("that agrees, so use the corrected {value}"),
-        (true, false) => format!("that agrees, so use the calibrated {value}"),
-        (false, _) => {
+    let end = match agree(told, open) {
+        true => format!("that agrees, so use the {which} {value}"),
+        false => {
             format!("that does not agree, so use the {value} with the force")
         }
     };
