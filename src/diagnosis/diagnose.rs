@@ -8,12 +8,15 @@ use crate::diagnosis::compare::checks::{
 };
 use crate::diagnosis::decide::choose::{Choice, Chosen};
 use crate::diagnosis::decide::judge::{
-    Beforehand, check_odds, group, judge, separating, verdict,
+    Beforehand, Seen, check_odds, group, judge_all, log_of_noises, separating,
+    verdict,
 };
-use crate::diagnosis::evidence::attribute::{Attribution, attribute};
+use crate::diagnosis::decide::noise::{judged_noises, taken};
 use crate::diagnosis::evidence::fit::Fit;
+use crate::diagnosis::evidence::noises::noises;
+use crate::diagnosis::evidence::table::{Row, Table};
 use crate::diagnosis::findings::{
-    Diagnosis, Judged, LawParameters, ParameterSummary, Verdict,
+    Diagnosis, Judged, JudgedNoise, LawParameters, ParameterSummary, Verdict,
 };
 use crate::diagnosis::hypothesis::{NONE, UNKNOWN};
 use crate::diagnosis::locate::{FreeForce, free_fit, own_draws};
@@ -83,7 +86,11 @@ struct Subject<'a, P> {
 struct Decision {
     /// Everything that was weighed, most probable first.
     judged: Vec<Judged>,
+    /// The noises that are kept, most probable first.
+    noises: Vec<JudgedNoise>,
     verdict: Verdict,
+    /// Under which noise of the table the model goes on.
+    row: usize,
     /// What is added to the model.
     chosen: Option<Chosen>,
 }
@@ -96,56 +103,99 @@ impl<P: Program> Subject<'_, P> {
     ) -> Result<Diagnosis> {
         let begun = Instant::now();
         let seed = Seed::new(options.seed);
-        let (program, all) = (self.program, &self.all[..]);
-        check_odds(&options.odds, all)?;
-        let seed_of = seed.child(0);
-        let found =
-            attribute(program, Some(&self.extent), all, seed_of, progress)?;
+        check_odds(&options.odds, &self.all)?;
+        let mut table = self.table(options, seed, progress)?;
         progress.begin("weighing pairs", None);
-        let Decision { judged, verdict, chosen } =
-            self.decide(&found, options, seed)?;
+        let decision = self.decide(&table, options, seed)?;
         progress.begin("showing", None);
-        let free = self.free_form(verdict, &found)?;
-        let after = corrected_model(chosen.as_ref(), free.as_ref(), all, seed);
+        table.rows[decision.row].opened(&self.extent, seed.child(2))?;
+        let mut diagnosis = self.shown(&table, &decision, options, seed)?;
+        diagnosis.seconds = begun.elapsed().as_secs_f64();
+        Ok(diagnosis)
+    }
+
+    /// Every mechanism under every noise that is kept.
+    fn table(
+        &self,
+        options: &Options,
+        seed: Seed,
+        progress: &dyn Progress,
+    ) -> Result<Table<'_, P>> {
+        progress.begin("weighing noises", None);
+        let (program, extent) = (self.program, &self.extent);
+        let noises = noises(program, &options.noise, extent, seed.child(1))?;
+        Table::of(noises, extent, &self.all, seed.child(0), progress)
+    }
+
+    /// What was found and decided, as plain data.
+    fn shown(
+        &self,
+        table: &Table<'_, P>,
+        decision: &Decision,
+        options: &Options,
+        seed: Seed,
+    ) -> Result<Diagnosis> {
+        let all = &self.all[..];
+        let Decision { judged, chosen, verdict, .. } = decision;
+        let row = &table.rows[decision.row];
+        let free = self.free_form(*verdict, row)?;
+        let after = corrected_model(decision, free.as_ref(), row, all, seed);
         let compared =
-            self.compared(&found.none, after.as_ref(), options, seed)?;
-        let law = self.law(&found, &compared, options)?;
-        let group = group(&judged);
-        let rivals = chosen.as_ref().map(|c| c.rivals(all, &found.none));
+            self.compared(table, row, after.as_ref(), options, seed)?;
+        let law = self.law(table, row, &compared, options)?;
+        let group = group(judged);
+        let none = &row.found.none;
+        let rivals = chosen.as_ref().map(|c| c.rivals(all, none));
         let mut diagnosis = Diagnosis {
-            verdict,
+            verdict: *verdict,
             rivals: rivals.unwrap_or_default(),
-            separating: separating(&group, &judged),
+            separating: separating(&group, judged),
             group,
-            mechanisms: judged,
+            mechanisms: judged.clone(),
+            noise: decision.noises.clone(),
+            selected_noise: row.noisy.name.clone(),
             law,
             ..compared
         };
-        self.write_out(&mut diagnosis, chosen.as_ref(), &found, options);
-        diagnosis.forces = found.forces;
-        diagnosis.seconds = begun.elapsed().as_secs_f64();
+        let forces = &row.found.forces;
+        self.write_out(&mut diagnosis, chosen.as_ref(), forces, options);
+        diagnosis.forces = forces.clone();
         Ok(diagnosis)
     }
 
     /// From evidences to probabilities, a verdict, and what is added.
     fn decide(
         &self,
-        found: &Attribution,
+        table: &Table<'_, P>,
         options: &Options,
         seed: Seed,
     ) -> Result<Decision> {
-        let (program, all) = (self.program, &self.all[..]);
-        let mut judged = judge(found, all, &options.odds);
+        let all = &self.all[..];
+        let rows: Vec<Seen<'_>> = table.rows.iter().map(Seen::of).collect();
+        let mut judged = judge_all(&rows, all, &options.odds);
         let verdict = verdict(&judged);
         let beforehand = Beforehand::of(&judged, &options.odds);
-        let choice =
-            Choice { program, all, found, judged: &judged, beforehand, seed };
+        let logs = log_of_noises(&rows, all, &beforehand);
+        let row = taken(table, &logs);
+        let choice = Choice {
+            program: table.rows[row].noisy.program(),
+            all,
+            found: &table.rows[row].found,
+            open: table.rows[row].open,
+            judged: &judged,
+            beforehand,
+            seed,
+        };
         let chosen = choice.choose(verdict)?;
-        let (verdict, chosen) = choice.explained(verdict, chosen);
+        let (mut verdict, chosen) = choice.explained(verdict, chosen);
         if let Some(chosen) = &chosen {
             chosen.call(&mut judged, all);
         }
-        Ok(Decision { judged, verdict, chosen })
+        if verdict == Verdict::Adequate && !table.keeps_named() {
+            verdict = Verdict::Errors;
+        }
+        let noises = judged_noises(table, &logs)?;
+        Ok(Decision { judged, noises, verdict, row, chosen })
     }
 
     /// Where the mismatch is, and what the corrected model is.
@@ -153,7 +203,7 @@ impl<P: Program> Subject<'_, P> {
         &self,
         diagnosis: &mut Diagnosis,
         chosen: Option<&Chosen>,
-        found: &Attribution,
+        forces: &[FreeForce],
         options: &Options,
     ) {
         let all = &self.all[..];
@@ -163,7 +213,7 @@ impl<P: Program> Subject<'_, P> {
         let quantity = pictured.first().map_or("", |p| &p.quantity);
         diagnosis.corrected = corrected(&added, options, quantity);
         diagnosis.mismatch =
-            mismatch(verdict, &reaches, &found.forces, &self.events, pictured);
+            mismatch(verdict, &reaches, forces, &self.events, pictured);
         mark(diagnosis, &self.events);
     }
 
@@ -172,20 +222,22 @@ impl<P: Program> Subject<'_, P> {
     fn free_form(
         &self,
         verdict: Verdict,
-        found: &Attribution,
+        row: &Row<'_, P>,
     ) -> Result<Option<(Box<dyn Mechanism>, Fit)>> {
         if verdict != Verdict::Unexplained {
             return Ok(None);
         }
+        let (program, found) = (row.noisy.program(), &row.found);
         let force = most_probable(&found.forces)?;
-        free_fit(self.program, &self.extent, force, &found.none).map(Some)
+        free_fit(program, &self.extent, force, &found.none).map(Some)
     }
 
     /// The law's parameters as they were, corrected, and with the rest of the
     /// physics left open.
     fn law(
         &self,
-        found: &Attribution,
+        table: &Table<'_, P>,
+        row: &Row<'_, P>,
         compared: &Diagnosis,
         options: &Options,
     ) -> Result<LawParameters> {
@@ -207,9 +259,9 @@ impl<P: Program> Subject<'_, P> {
         };
         let corrected = compared.parameters.iter().filter(is_own);
         let corrected = corrected.filter(|p| is_of_law(p)).cloned();
-        let open = own_draws(self.program, &found.forces)?;
+        let open = own_draws(row.noisy.program(), &row.found.forces)?;
         Ok(LawParameters {
-            as_it_was: of(&found.none.draws),
+            as_it_was: of(&table.as_it_was()?.none.draws),
             corrected: match added.is_empty() {
                 true => Vec::new(),
                 false => corrected.collect(),
@@ -221,11 +273,13 @@ impl<P: Program> Subject<'_, P> {
     /// Before, after, and what both predict.
     fn compared(
         &self,
-        none: &Fit,
+        table: &Table<'_, P>,
+        row: &Row<'_, P>,
         after: Option<&FittedModel<'_>>,
         options: &Options,
         seed: Seed,
     ) -> Result<Diagnosis> {
+        let none = &table.as_it_was()?.none;
         let before = FittedModel {
             mechanisms: Vec::new(),
             fit: none,
@@ -234,7 +288,7 @@ impl<P: Program> Subject<'_, P> {
         };
         let old = checks(self.program, &self.events, &before)?;
         let new = match after {
-            Some(after) => checks(self.program, &self.events, after)?,
+            Some(after) => checks(row.noisy.program(), &self.events, after)?,
             None => old.clone(),
         };
         let fit = after.map_or(none, |after| after.fit);
@@ -262,15 +316,19 @@ impl<P: Program> Subject<'_, P> {
 }
 
 /// What the corrected model is, to be shown.
-fn corrected_model<'a>(
-    chosen: Option<&'a Chosen>,
+fn corrected_model<'a, P>(
+    decision: &'a Decision,
     free: Option<&'a (Box<dyn Mechanism>, Fit)>,
+    row: &'a Row<'_, P>,
     all: &'a [Box<dyn Mechanism>],
     seed: Seed,
 ) -> Option<FittedModel<'a>> {
-    let (mechanisms, fit, rough) = match (chosen, free) {
+    let (mechanisms, fit, rough) = match (&decision.chosen, free) {
         (Some(chosen), _) => (chosen.mechanisms(all), &chosen.fit, false),
         (None, Some((force, fit))) => (vec![force.as_ref()], fit, true),
+        (None, None) if decision.verdict == Verdict::Errors => {
+            (Vec::new(), &row.found.none, false)
+        }
         (None, None) => return None,
     };
     Some(FittedModel { mechanisms, fit, first: seed.child(40), rough })

@@ -21,8 +21,12 @@ pub struct Diagnosis {
     pub mismatch: Vec<Mismatch>,
     /// Everything that was weighed, most probable first.
     pub mechanisms: Vec<Judged>,
+    /// The noises that may have made the errors, most probable first.
+    pub noise: Vec<JudgedNoise>,
     /// The names of what is added to the model; empty where nothing is.
     pub selected: Vec<String>,
+    /// The noise of the corrected model.
+    pub selected_noise: String,
     /// What the recording cannot tell apart.
     pub group: Vec<String>,
     /// Combinations that would do nearly as well as the selected one: within
@@ -229,6 +233,24 @@ pub struct Judged {
     pub parameters: Vec<ParameterSummary>,
     /// ln of the evidence of each variant, by its label.
     pub variants: Vec<(String, f64)>,
+}
+
+/// A noise as the evidence judges it.
+#[derive(Debug, Clone, Default)]
+#[non_exhaustive]
+pub struct JudgedNoise {
+    /// Its name, as event files have it.
+    pub name: String,
+    /// Whether large errors are more common than a normal law has them.
+    pub has_tails: bool,
+    /// Whether its size changes along the recording.
+    pub grows: bool,
+    /// Its probability among those that are kept.
+    pub probability: f64,
+    /// Against the noise that the model names.
+    pub log10_bayes_factor: f64,
+    /// Its parameters.
+    pub parameters: Vec<ParameterSummary>,
 }
 
 /// A combination of mechanisms beside the selected one.

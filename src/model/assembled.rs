@@ -14,7 +14,7 @@ use super::run::Run;
 use crate::block::{Field, List};
 use crate::error::{Error, Outcome, Result, Stop};
 use crate::mechanism::{Change, Mechanism, Role, Unknown};
-use crate::noise::{self, NoiseEntry};
+use crate::noise::{self, Form, NoiseEntry};
 use crate::observe::{Event, Quantity};
 use crate::physics::friction::LawSum;
 use crate::physics::{Rest, State};
@@ -376,6 +376,21 @@ impl Program for Assembled {
         let change = self.ask_change(run)?;
         let laws = self.ask_laws(run)?;
         self.score_under(run, change.as_ref(), &laws)
+    }
+
+    /// The law, the mechanisms and their priors stay. Those of the noise are
+    /// its defaults, except where it remembers as this one does.
+    fn with_noise(&self, name: &str) -> Result<Option<Self>> {
+        let alike = |other: &str| Form::of(other).plain();
+        let kept = match alike(name) == alike(&self.noise()) {
+            true => &self.own[..],
+            false => &self.own[..self.laws],
+        };
+        let priors = kept.iter().map(|own| (own.name.clone(), own.prior));
+        let (event, friction) = (self.event.clone(), self.friction.clone());
+        let noise = noise::parse(name)?;
+        let own = Self::new(event, friction, noise, &priors.collect())?;
+        Ok(Some(Self { added: self.added.clone(), ..own }))
     }
 }
 

@@ -27,6 +27,18 @@ pub trait Program: Sync {
     fn events(&self) -> usize {
         1
     }
+
+    /// The same model with another noise, by the name that event files give
+    /// it; `None` where the noise is written into the body, as `model!` does.
+    ///
+    /// # Errors
+    /// A name that no noise has.
+    fn with_noise(&self, _name: &str) -> Result<Option<Self>>
+    where
+        Self: Sized,
+    {
+        Ok(None)
+    }
 }
 
 /// A point at which a model is evaluated.

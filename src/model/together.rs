@@ -52,6 +52,11 @@ impl<P: Program> Program for (P, Event) {
     fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
         self.0.run(run)
     }
+
+    fn with_noise(&self, name: &str) -> Result<Option<Self>> {
+        let other = self.0.with_noise(name)?;
+        Ok(other.map(|program| (program, self.1.clone())))
+    }
 }
 
 impl<P: Program> Member for (P, Event) {
@@ -199,6 +204,17 @@ impl<M: Member> Program for Together<M> {
 
     fn events(&self) -> usize {
         self.members.len()
+    }
+
+    fn with_noise(&self, name: &str) -> Result<Option<Self>> {
+        let members = self.members.iter().map(|one| one.with_noise(name));
+        let members: Option<Vec<M>> = members.collect::<Result<_>>()?;
+        Ok(members.map(|members| Self {
+            members,
+            labels: self.labels.clone(),
+            blocks: self.blocks.clone(),
+            shares: self.shares,
+        }))
     }
 }
 

@@ -45,8 +45,10 @@ struct Pairs {
 pub(crate) struct Choice<'a, P> {
     pub(crate) program: &'a P,
     pub(crate) all: &'a [Box<dyn Mechanism>],
-    /// The fit of each of them.
+    /// The fit of each of them, under one noise.
     pub(crate) found: &'a Attribution,
+    /// ln of the evidence with a force of free form, under the same noise.
+    pub(crate) open: f64,
     /// Their names, most probable first.
     pub(crate) judged: &'a [Judged],
     pub(crate) beforehand: Beforehand<'a>,
@@ -90,14 +92,11 @@ impl<P: Program> Choice<'_, P> {
         verdict: Verdict,
         chosen: Option<Chosen>,
     ) -> (Verdict, Option<Chosen>) {
-        let unknown =
-            self.judged.iter().find(|m| m.kind == Hypothesis::Unknown);
         let further = RISE * LN_10 + self.beforehand.price(UNKNOWN);
         let beyond = |c: &Chosen| {
             let short = if c.which.len() > 1 { further } else { 0.0 };
             let reached = c.fit.log_evidence + short;
-            verdict != Verdict::Unexplained
-                || unknown.is_some_and(|u| reached > u.log_evidence)
+            verdict != Verdict::Unexplained || reached > self.open
         };
         let Some(chosen) = chosen.filter(beyond) else {
             return (verdict, None);

@@ -5,6 +5,7 @@ use std::f64::consts::LN_10;
 
 use crate::diagnosis::evidence::attribute::Attribution;
 use crate::diagnosis::evidence::fit::Fit;
+use crate::diagnosis::evidence::table::Row;
 use crate::diagnosis::findings::{Judged, ParameterSummary, Verdict};
 use crate::diagnosis::hypothesis::{Hypothesis, NONE, UNKNOWN};
 use crate::diagnosis::locate::{FreeForce, NOUN, SAYS};
@@ -49,6 +50,34 @@ pub(crate) fn check_odds(
     }
 }
 
+/// What was found under one noise.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Seen<'a> {
+    pub(crate) found: &'a Attribution,
+    /// ln of the evidence with a force of free form, where it was weighed.
+    pub(crate) open: Option<f64>,
+}
+
+impl<'a> Seen<'a> {
+    pub(crate) fn of<P>(row: &'a Row<'_, P>) -> Self {
+        Self { found: &row.found, open: Some(row.open) }
+    }
+
+    /// ln of the evidence of each hypothesis, variants averaged, by its name.
+    fn logs(&self, catalogue: &[Box<dyn Mechanism>]) -> Vec<(&str, f64)> {
+        let found = self.found;
+        let mut all = vec![(NONE, found.none.log_evidence)];
+        for name in names(catalogue) {
+            let own = catalogue.iter().zip(&found.candidates);
+            let own = own.filter(|(m, _)| m.name() == name);
+            let logs: Vec<f64> = own.map(|(_, f)| f.log_evidence).collect();
+            all.push((name, log_mean(&logs)));
+        }
+        all.extend(self.open.map(|log| (UNKNOWN, log)));
+        all
+    }
+}
+
 /// Judges the model as it was, every mechanism and the free-form force, where
 /// it was inferred along any axis; most probable first.
 pub fn judge(
@@ -56,49 +85,89 @@ pub fn judge(
     catalogue: &[Box<dyn Mechanism>],
     odds: &Odds,
 ) -> Vec<Judged> {
-    let none = &found.none;
-    let mut all = vec![Judged {
-        name: NONE.into(),
-        noun: Noun::one("the model as it was"),
-        kind: Hypothesis::Baseline,
-        log_evidence: none.log_evidence,
-        se: none.se,
-        says: "Nothing is missing: the model as it is.".into(),
-        ..Judged::default()
-    }];
+    let open = (!found.forces.is_empty()).then(|| found.open_log());
+    judge_all(&[Seen { found, open }], catalogue, odds)
+}
+
+/// The same averaged over noises that are even beforehand.
+pub(crate) fn judge_all(
+    rows: &[Seen<'_>],
+    catalogue: &[Box<dyn Mechanism>],
+    odds: &Odds,
+) -> Vec<Judged> {
+    let mut all = vec![none(rows)];
     for name in names(catalogue) {
-        all.push(judged(name, catalogue, &found.candidates));
+        all.push(judged(name, catalogue, rows));
     }
-    if !found.forces.is_empty() {
-        all.push(unknown(&found.forces, none));
-    }
+    all.extend(unknown(rows));
     weigh(&mut all, odds);
+    let before = all[0].log_evidence;
     for one in &mut all {
-        let gain = one.log_evidence - none.log_evidence;
-        one.log10_bayes_factor = gain / LN_10;
+        one.log10_bayes_factor = (one.log_evidence - before) / LN_10;
     }
     all.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     all
 }
 
-/// One name, its variants averaged.
+/// ln of the probability of each noise and the recordings, up to a constant:
+/// summed over what may be missing, noises being even beforehand.
+pub(crate) fn log_of_noises(
+    rows: &[Seen<'_>],
+    catalogue: &[Box<dyn Mechanism>],
+    beforehand: &Beforehand<'_>,
+) -> Vec<f64> {
+    let of = |row: &Seen<'_>| {
+        let logs = row.logs(catalogue).into_iter();
+        log_sum_exp(logs.map(|(name, log)| beforehand.log(name) + log))
+    };
+    rows.iter().map(of).collect()
+}
+
+fn none(rows: &[Seen<'_>]) -> Judged {
+    let fits: Vec<&Fit> = rows.iter().map(|row| &row.found.none).collect();
+    let logs: Vec<f64> = fits.iter().map(|fit| fit.log_evidence).collect();
+    Judged {
+        name: NONE.into(),
+        noun: Noun::one("the model as it was"),
+        kind: Hypothesis::Baseline,
+        log_evidence: log_mean(&logs),
+        se: most(&fits).map_or(f64::NAN, |fit| fit.se),
+        says: "Nothing is missing: the model as it is.".into(),
+        ..Judged::default()
+    }
+}
+
+/// The fit with the most evidence.
+fn most<'f>(fits: &[&'f Fit]) -> Option<&'f Fit> {
+    let more = |a: &&&Fit, b: &&&Fit| a.log_evidence.total_cmp(&b.log_evidence);
+    fits.iter().max_by(more).copied()
+}
+
+/// One name, its variants and the noises averaged.
 fn judged(
     name: &str,
     catalogue: &[Box<dyn Mechanism>],
-    fits: &[Fit],
+    rows: &[Seen<'_>],
 ) -> Judged {
-    let variants: Vec<(&dyn Candidate, &Fit)> = catalogue
-        .iter()
-        .zip(fits)
-        .filter(|(m, _)| m.name() == name)
-        .map(|(m, fit)| (m.as_ref() as &dyn Candidate, fit))
-        .collect();
-    let logs: Vec<f64> =
-        variants.iter().map(|(_, fit)| fit.log_evidence).collect();
-    let best = variants
-        .iter()
-        .max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence));
+    let under = |i: usize| -> Vec<&Fit> {
+        rows.iter().map(|row| &row.found.candidates[i]).collect()
+    };
+    let mut variants = Vec::new();
+    let mut best: Option<(&dyn Candidate, &Fit)> = None;
+    for (i, mechanism) in catalogue.iter().enumerate() {
+        if mechanism.name() != name {
+            continue;
+        }
+        let fits = under(i);
+        let logs: Vec<f64> = fits.iter().map(|f| f.log_evidence).collect();
+        variants.push((mechanism.label(), log_mean(&logs)));
+        let Some(fit) = most(&fits) else { continue };
+        if best.is_none_or(|(_, b)| fit.log_evidence > b.log_evidence) {
+            best = Some((mechanism.as_ref(), fit));
+        }
+    }
     let Some((mechanism, fit)) = best else { return Judged::default() };
+    let logs: Vec<f64> = variants.iter().map(|(_, log)| *log).collect();
     let parameters: Vec<ParameterSummary> = summarise(&fit.draws)
         .iter()
         .take(fit.added)
@@ -115,32 +184,31 @@ fn judged(
         coordinate: mechanism.coordinate(),
         form: mechanism.form(),
         parameters,
-        variants: variants
-            .iter()
-            .map(|(m, fit)| (m.label(), fit.log_evidence))
-            .collect(),
+        variants,
         ..Judged::default()
     }
 }
 
-fn unknown(forces: &[FreeForce], none: &Fit) -> Judged {
-    let logs: Vec<f64> = forces
-        .iter()
-        .map(|force| none.log_evidence + force.log_bayes_factor)
-        .collect();
-    let best = forces
-        .iter()
-        .max_by(|a, b| a.log_bayes_factor.total_cmp(&b.log_bayes_factor));
-    Judged {
+fn unknown(rows: &[Seen<'_>]) -> Option<Judged> {
+    let logs: Vec<f64> =
+        rows.iter().map(|row| row.open).collect::<Option<_>>()?;
+    let forces = rows.iter().flat_map(|row| {
+        row.found.forces.iter().map(|force| (force, row.found.none.se))
+    });
+    let more = |a: &(&FreeForce, f64), b: &(&FreeForce, f64)| {
+        a.0.log_bayes_factor.total_cmp(&b.0.log_bayes_factor)
+    };
+    let best = forces.max_by(more);
+    Some(Judged {
         name: UNKNOWN.into(),
         noun: Noun::one(NOUN),
         kind: Hypothesis::Unknown,
         log_evidence: log_mean(&logs),
-        se: best.map_or(none.se, |force| force.se.hypot(none.se)),
+        se: best.map_or(f64::NAN, |(force, none)| force.se.hypot(none)),
         says: SAYS.into(),
-        coordinate: best.map(|force| force.axis),
+        coordinate: best.map(|(force, _)| force.axis),
         ..Judged::default()
-    }
+    })
 }
 
 /// What is held likely before the recording is seen: half of it for `none`,

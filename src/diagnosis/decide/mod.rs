@@ -3,3 +3,4 @@
 
 pub(crate) mod choose;
 pub(crate) mod judge;
+pub(crate) mod noise;

@@ -7,8 +7,11 @@ use super::fit::{Fit, Prospect, fit, prospect, spread};
 use super::grids::even_grids;
 use super::screen::{COARSE, FINE, edge_grids};
 use crate::diagnosis::locate::{FreeForce, locate_all};
+use crate::draws::log_sum_exp;
 use crate::error::Result;
-use crate::infer::{LaplaceMixture, Precision, Progress, SearchSpace};
+use crate::infer::{
+    LaplaceMixture, Precision, Progress, Quiet, SearchSpace,
+};
 use crate::mechanism::{Extent, Mechanism};
 use crate::model::{Posterior, Program, With};
 use crate::seed::Seed;
@@ -22,6 +25,15 @@ pub struct Attribution {
     pub forces: Vec<FreeForce>,
     /// With each mechanism, as the catalogue has them.
     pub candidates: Vec<Fit>,
+}
+
+impl Attribution {
+    /// ln of the evidence with a force of free form, its axes averaged.
+    pub(crate) fn open_log(&self) -> f64 {
+        let gains = self.forces.iter().map(|force| force.log_bayes_factor);
+        let mean = log_sum_exp(gains) - (self.forces.len() as f64).ln();
+        self.none.log_evidence + mean
+    }
 }
 
 /// How many climbs start from the model's own best place, with a mechanism
@@ -54,6 +66,21 @@ pub fn attribute<P: Program>(
     progress: &dyn Progress,
 ) -> Result<Attribution> {
     let none = fit(program, &[], &LaplaceMixture::default(), seed.child(0))?;
+    attribute_beside(program, none, extent, catalogue, seed, progress)
+}
+
+/// The same beside the fit of the model as it is.
+///
+/// # Errors
+/// As [`attribute`].
+pub(crate) fn attribute_beside<P: Program>(
+    program: &P,
+    none: Fit,
+    extent: Option<&Extent>,
+    catalogue: &[Box<dyn Mechanism>],
+    seed: Seed,
+    progress: &dyn Progress,
+) -> Result<Attribution> {
     progress.begin("locating the mismatch", None);
     let seed_of = seed.child(0).child(9);
     let forces = match extent {
@@ -63,10 +90,74 @@ pub fn attribute<P: Program>(
     let owns = Owns::of(program, &none, &forces)?;
     progress.begin("weighing mechanisms", Some(catalogue.len() as u64));
     let weighing = Weighing { program, catalogue, seed };
-    let looked = weighing.looked(&owns, progress)?;
-    let pursued = weighing.pursued(looked, none.log_evidence)?;
-    let candidates = weighing.fitted(pursued, none.log_evidence)?;
+    let candidates =
+        weighing.weighed(none.log_evidence, progress, |mechanism, seed| {
+            single(program, mechanism, &owns, seed)
+        })?;
     Ok(Attribution { none, forces, candidates })
+}
+
+/// Each mechanism weighed again under another noise of the same model: from
+/// where it is likely under the first one, with the model's own parameters at
+/// some places. What lies below a known evidence does not matter.
+///
+/// # Errors
+/// As [`attribute`].
+pub(crate) fn follow<P: Program>(
+    (first, found): (&P, &Attribution),
+    (program, owns): (&P, [&[f64]; 2]),
+    catalogue: &[Box<dyn Mechanism>],
+    known: f64,
+    seed: Seed,
+) -> Result<Vec<Fit>> {
+    let weighing = Weighing { program, catalogue, seed };
+    let place = |mechanism: &dyn Mechanism| {
+        let mut all = catalogue.iter();
+        all.position(|one| one.label() == mechanism.label()).unwrap_or(0)
+    };
+    weighing.weighed(known, &Quiet, |mechanism, seed| {
+        let fit = &found.candidates[place(mechanism)];
+        let starts = carried(first, fit, program, owns, mechanism)?;
+        let space = SearchSpace { starts, ..SearchSpace::default() };
+        let backend = LaplaceMixture::within(space);
+        prospect(program, &[mechanism], backend, seed)
+    })
+}
+
+/// Of how many draws under one noise climbs under the next start.
+const CARRIED: usize = 8;
+
+/// Draws of a fit as places of the same model under another noise: what both
+/// have is carried over by its name, the rest begins at each of some places.
+fn carried<P: Program>(
+    from: &P,
+    fit: &Fit,
+    to: &P,
+    owns: [&[f64]; 2],
+    mechanism: &dyn Mechanism,
+) -> Result<Vec<Vec<f64>>> {
+    let (old, new) =
+        (With::new(from, &[mechanism]), With::new(to, &[mechanism]));
+    let (old, added) = (Posterior::new(&old)?, new.added());
+    let new = Posterior::new(&new)?;
+    let place = |name: &str| {
+        let mut all = old.parameters().iter();
+        all.position(|p| p.name == name)
+    };
+    let names = new.parameters().iter().map(|p| place(&p.name));
+    let places: Vec<Option<usize>> = names.collect();
+    let mut starts = Vec::new();
+    for row in fit.draws.thinned(CARRIED) {
+        let line = old.line(row)?;
+        for own in owns {
+            let of = |(i, place): (usize, &Option<usize>)| match place {
+                Some(place) => line[*place],
+                None => own[i - added],
+            };
+            starts.push(places.iter().enumerate().map(of).collect());
+        }
+    }
+    Ok(starts)
 }
 
 /// Mechanisms that are weighed one by one, in parallel.
@@ -81,16 +172,29 @@ impl<P: Program> Weighing<'_, P> {
         self.seed.child(1 + i as u64)
     }
 
-    /// What a search finds of each.
+    /// The fit of each, from what a look at it finds, beside an evidence that
+    /// is known.
+    fn weighed(
+        &self,
+        known: f64,
+        progress: &dyn Progress,
+        look: impl Fn(&dyn Mechanism, Seed) -> Result<Prospect> + Sync,
+    ) -> Result<Vec<Fit>> {
+        let looked = self.looked(progress, look)?;
+        let pursued = self.pursued(looked, known)?;
+        self.fitted(pursued, known)
+    }
+
+    /// What a look finds of each.
     fn looked(
         &self,
-        owns: &Owns,
         progress: &dyn Progress,
+        look: impl Fn(&dyn Mechanism, Seed) -> Result<Prospect> + Sync,
     ) -> Result<Vec<Prospect>> {
         let all = self.catalogue.par_iter().enumerate();
         all.map(|(i, mechanism)| {
             let mechanism = mechanism.as_ref();
-            let found = single(self.program, mechanism, owns, self.seed_of(i))
+            let found = look(mechanism, self.seed_of(i))
                 .map_err(|error| error.within(mechanism.name()));
             progress.advance(1);
             found

@@ -5,5 +5,7 @@ pub(crate) mod attribute;
 mod edges;
 pub(crate) mod fit;
 mod grids;
+pub(crate) mod noises;
 mod others;
 mod screen;
+pub(crate) mod table;

@@ -27,6 +27,7 @@ use crate::seed::Seed;
 
 use free_form::{FreeForm, range};
 pub(super) use free_form::{NOUN, SAYS};
+pub(crate) use look::Outlook;
 use look::{Sought, proposal};
 use marginal::Marginal;
 pub use process::CELLS;
@@ -151,6 +152,22 @@ pub fn locate<P: Program>(
     seed: Seed,
 ) -> Result<FreeForce> {
     located(program, extent, &[axis], none, seed).map(|mut all| all.remove(0))
+}
+
+/// About what a free-form force over distance brings to a model whose own
+/// parameters are likely there, on the real line.
+///
+/// # Errors
+/// As [`locate`].
+pub(crate) fn outlook<P: Program>(
+    program: &P,
+    extent: &Extent,
+    own: &[f64],
+) -> Result<Outlook> {
+    let form = FreeForm::cells(extent, Axis::Place);
+    let with = With::new(program, &[&form]);
+    let posterior = Posterior::new(&with)?;
+    Sought { cells: Cells(&posterior), extent }.outlook(own)
 }
 
 /// The same along every axis; most sharply where the force is likely.

@@ -1,0 +1,245 @@
+//! Which noises a model is weighed under: those that may have made its
+//! errors.
+//!
+//! Each is weighed with physics absent and with a force of free form in the
+//! model. With the force a noise cannot win by swallowing a mismatch, and
+//! without it a force cannot by imitating noise; what does nearly as well as
+//! the best in either way is kept.
+
+use std::f64::consts::LN_10;
+use std::ops::Deref;
+
+use rayon::prelude::*;
+
+use super::fit::{Fit, fit};
+use crate::diagnosis::locate::{Outlook, outlook};
+use crate::draws::log_sum_exp;
+use crate::error::Result;
+use crate::infer::LaplaceMixture;
+use crate::mechanism::Extent;
+use crate::model::{Posterior, Program};
+use crate::noise::Form;
+use crate::seed::Seed;
+
+/// What errors may remember, besides what the named noise says: nothing, what
+/// a steady process does, the same with white errors; what the filter of a
+/// receiver leaves, with white errors or with a slow drift.
+const MEMORIES: [&str; 5] =
+    ["white", "ou", "ou + white", "matern32 + white", "matern32 + ou"];
+/// In log10: how far below the best a noise may be that is kept.
+const NEAR: f64 = 2.5;
+/// The most noises that mechanisms are weighed under; the named one may come
+/// on top.
+const MOST: usize = 3;
+
+/// A program as it was given, or the same with another noise.
+#[derive(Debug)]
+enum Held<'a, P> {
+    Named(&'a P),
+    Other(Box<P>),
+}
+
+impl<P> Deref for Held<'_, P> {
+    type Target = P;
+
+    fn deref(&self) -> &P {
+        match self {
+            Self::Named(program) => program,
+            Self::Other(program) => program,
+        }
+    }
+}
+
+/// A program under one noise, with what its evidence is without physics and
+/// with a force of free form.
+#[derive(Debug)]
+pub(crate) struct Noisy<'a, P> {
+    /// The noise, as an event file names it.
+    pub(crate) name: String,
+    program: Held<'a, P>,
+    pub(crate) none: Fit,
+    pub(crate) open: Outlook,
+}
+
+impl<P> Noisy<'_, P> {
+    pub(crate) fn program(&self) -> &P {
+        &self.program
+    }
+
+    /// Where the model's own parameters are likely, on the real line.
+    pub(crate) fn own(&self) -> [&[f64]; 2] {
+        [self.none.own(), &self.open.own]
+    }
+
+    /// Whether it is the one that the model names.
+    pub(crate) fn is_named(&self) -> bool {
+        matches!(self.program, Held::Named(_))
+    }
+
+    fn form(&self) -> Form {
+        Form::of(&self.name)
+    }
+
+    /// ln of its evidence in either way: without physics, and with a force.
+    fn logs(&self) -> [f64; 2] {
+        [self.none.log_evidence, self.open.log]
+    }
+}
+
+/// The noises that a model is weighed under.
+#[derive(Debug)]
+pub(crate) struct Noises<'a, P> {
+    /// Those that are kept, most evidence first.
+    pub(crate) kept: Vec<Noisy<'a, P>>,
+    /// The named one, where it is not among them.
+    pub(crate) dropped: Option<Noisy<'a, P>>,
+}
+
+/// Weighs noises beside the named one, and keeps those that do nearly as well
+/// as the best.
+///
+/// # Errors
+/// A model that fails under the noise that it names.
+pub(crate) fn noises<'a, P: Program>(
+    program: &'a P,
+    named: &str,
+    extent: &Extent,
+    seed: Seed,
+) -> Result<Noises<'a, P>> {
+    let survey = Survey { program, extent, seed };
+    let mut all = vec![survey.named(named)?];
+    all.extend(survey.others(MEMORIES.map(Form::of).into(), &all)?);
+    for forms in [decorated, doubly_decorated] {
+        let mut further = survey.others(forms(&all), &all)?;
+        further.retain(|one| pays(one, &all));
+        all.extend(further);
+    }
+    Ok(kept(all))
+}
+
+/// Weighs a program under many noises.
+struct Survey<'a, 'e, P> {
+    program: &'a P,
+    extent: &'e Extent,
+    seed: Seed,
+}
+
+impl<'a, P: Program> Survey<'a, '_, P> {
+    /// Those of some noises that none of the known ones is like, as far as
+    /// the program and its recording allow them.
+    fn others(
+        &self,
+        forms: Vec<Form>,
+        known: &[Noisy<'a, P>],
+    ) -> Result<Vec<Noisy<'a, P>>> {
+        let is_new = |form: &Form| {
+            !known.iter().any(|one| one.form().is_like(form))
+        };
+        let mut new = Vec::new();
+        for form in forms.into_iter().filter(is_new) {
+            let name = form.to_string();
+            let other = self.program.with_noise(&name)?;
+            // The recording's times may not allow it.
+            let allowed = |program: &P| Posterior::new(program).is_ok();
+            new.extend(other.filter(allowed).map(|program| (name, program)));
+        }
+        let weighed: Vec<Result<(Fit, Outlook)>> = new
+            .par_iter()
+            .map(|(name, program)| self.weighed(name, program))
+            .collect();
+        // A noise under which nothing has a density is out of the question.
+        let found = new.into_iter().zip(weighed);
+        let found = found.filter_map(|((name, program), weighed)| {
+            let (none, open) = weighed.ok()?;
+            let program = Held::Other(Box::new(program));
+            Some(Noisy { name, program, none, open })
+        });
+        Ok(found.collect())
+    }
+
+    /// The named one.
+    fn named(&self, name: &str) -> Result<Noisy<'a, P>> {
+        let (none, open) = self.weighed(name, self.program)?;
+        let program = Held::Named(self.program);
+        Ok(Noisy { name: name.to_owned(), program, none, open })
+    }
+
+    fn weighed(&self, name: &str, program: &P) -> Result<(Fit, Outlook)> {
+        let letters = name.bytes().map(u64::from);
+        let seed = letters.fold(self.seed, Seed::child);
+        let none = fit(program, &[], &LaplaceMixture::default(), seed)?;
+        let open = outlook(program, self.extent, none.own())?;
+        Ok((none, open))
+    }
+}
+
+/// How far each is below the best of all, in ln, in the way that suits it
+/// better.
+fn short<P>(one: &Noisy<'_, P>, all: &[Noisy<'_, P>]) -> f64 {
+    let best = |way: usize| {
+        let logs = all.iter().map(|other| other.logs()[way]);
+        logs.fold(f64::NEG_INFINITY, f64::max)
+    };
+    let logs = one.logs();
+    (best(0) - logs[0]).min(best(1) - logs[1])
+}
+
+/// The noises that are near the best, each with tails and with growth.
+fn decorated<P>(all: &[Noisy<'_, P>]) -> Vec<Form> {
+    let near = all.iter().filter(|one| short(one, all) < NEAR * LN_10);
+    let with = |one: &Noisy<'_, P>| {
+        let form = one.form();
+        [
+            Form { has_tails: true, ..form.clone() },
+            Form { grows: true, ..form },
+        ]
+    };
+    near.flat_map(with).collect()
+}
+
+/// The noises with tails and growth, where both of them pay.
+fn doubly_decorated<P>(all: &[Noisy<'_, P>]) -> Vec<Form> {
+    let forms: Vec<Form> = all.iter().map(Noisy::form).collect();
+    let tailed = |form: &&Form| {
+        let alike = |other: &Form| other.plain() == form.plain();
+        form.grows && forms.iter().any(|f| f.has_tails && alike(f))
+    };
+    let grow = forms.iter().filter(tailed).cloned();
+    grow.map(|form| Form { has_tails: true, ..form }).collect()
+}
+
+/// Whether it has more evidence than each simpler noise of its memory, in
+/// either way.
+fn pays<P>(one: &Noisy<'_, P>, all: &[Noisy<'_, P>]) -> bool {
+    let form = one.form();
+    let simpler = all.iter().filter(|other| {
+        let other = other.form();
+        other.plain().is_like(&form.plain()) && !other.is_like(&form)
+    });
+    let best = |way: usize| {
+        let logs = simpler.clone().map(|other| other.logs()[way]);
+        logs.fold(f64::NEG_INFINITY, f64::max)
+    };
+    let logs = one.logs();
+    logs[0] > best(0) || logs[1] > best(1)
+}
+
+/// The best of those that are near the best, the named one among them where
+/// it is near.
+fn kept<P>(all: Vec<Noisy<'_, P>>) -> Noises<'_, P> {
+    let near: Vec<bool> =
+        all.iter().map(|one| short(one, &all) < NEAR * LN_10).collect();
+    let (mut kept, mut dropped) = (Vec::new(), None);
+    for (one, near) in all.into_iter().zip(near) {
+        if near {
+            kept.push(one);
+        } else if one.is_named() {
+            dropped = Some(one);
+        }
+    }
+    let both = |one: &Noisy<'_, P>| log_sum_exp(one.logs().into_iter());
+    kept.sort_by(|a, b| both(b).total_cmp(&both(a)));
+    let mut places = 0..;
+    kept.retain(|one| places.next() < Some(MOST) || one.is_named());
+    Noises { kept, dropped }
+}

@@ -1,0 +1,94 @@
+//! A noise as the answers to three questions: what an error remembers, what
+//! tails it has, and whether its size changes.
+
+use std::fmt;
+
+/// The answers of a noise that an event file names.
+///
+/// ```
+/// use couloir::noise::Form;
+/// let form = Form::of("tails + matern32 + white");
+/// assert_eq!(form.memory, "matern32 + white");
+/// assert!(form.has_tails && !form.grows);
+/// assert_eq!(form.to_string(), "matern32 + white + tails");
+/// assert_eq!(Form::of("iid"), Form::of("white"));
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Form {
+    /// The blocks that say what is remembered, such as "ou + white".
+    pub memory: String,
+    /// Whether large errors are more common than a normal law has them.
+    pub has_tails: bool,
+    /// Whether its size changes along the recording.
+    pub grows: bool,
+}
+
+impl Form {
+    /// That of a noise's name.
+    pub fn of(name: &str) -> Self {
+        let (mut has_tails, mut grows) = (false, false);
+        let mut memory = Vec::new();
+        for block in name.split('+').map(str::trim) {
+            match block {
+                "tails" => has_tails = true,
+                "growth" => grows = true,
+                "iid" => memory.push("white"),
+                "student" => {
+                    has_tails = true;
+                    memory.push("white");
+                }
+                other => memory.push(other),
+            }
+        }
+        Self { memory: memory.join(" + "), has_tails, grows }
+    }
+
+    /// The same memory with normal errors of one size.
+    #[must_use]
+    pub fn plain(&self) -> Self {
+        Self { has_tails: false, grows: false, ..self.clone() }
+    }
+
+    /// Whether it is the same noise as another, or one that makes no other
+    /// errors: AR(1) is the Ornstein-Uhlenbeck process seen at even times.
+    pub fn is_like(&self, other: &Self) -> bool {
+        let memory = |form: &Self| match form.memory.as_str() {
+            "ar(1)" => "ou".to_owned(),
+            memory => memory.to_owned(),
+        };
+        memory(self) == memory(other)
+            && self.has_tails == other.has_tails
+            && self.grows == other.grows
+    }
+}
+
+impl fmt::Display for Form {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.memory)?;
+        if self.has_tails {
+            f.write_str(" + tails")?;
+        }
+        if self.grows {
+            f.write_str(" + growth")?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_process_by_two_names_is_one() {
+        let like = |a: &str, b: &str| Form::of(a).is_like(&Form::of(b));
+        assert!(like("ar(1)", "ou"));
+        assert!(like("student", "white + tails"));
+        assert!(like("ar(1) + tails", "ou + tails"));
+        assert!(!like("ar(1)", "ou + white"));
+        assert!(!like("ar(2)", "ou"));
+        assert!(!like("iid", "white + growth"));
+        assert_eq!(Form::of("student").plain().to_string(), "white");
+    }
+}
