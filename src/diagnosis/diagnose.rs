@@ -106,9 +106,9 @@ impl<P: Program> Subject<'_, P> {
         check_odds(&options.odds, &self.all)?;
         let mut table = self.table(options, seed, progress)?;
         progress.begin("weighing pairs", None);
-        let decision = self.decide(&table, options, seed)?;
+        let row = self.taken(&mut table, options, seed, progress)?;
+        let decision = self.decide(&table, row, options, seed)?;
         progress.begin("showing", None);
-        table.rows[decision.row].opened(&self.extent, seed.child(2))?;
         let mut diagnosis = self.shown(&table, &decision, options, seed)?;
         diagnosis.seconds = begun.elapsed().as_secs_f64();
         Ok(diagnosis)
@@ -125,6 +125,38 @@ impl<P: Program> Subject<'_, P> {
         let (program, extent) = (self.program, &self.extent);
         let noises = noises(program, &options.noise, extent, seed.child(1))?;
         Table::of(noises, extent, &self.all, seed.child(0), progress)
+    }
+
+    /// The row of the noise that the model goes on with, all fits made.
+    fn taken(
+        &self,
+        table: &mut Table<'_, P>,
+        options: &Options,
+        seed: Seed,
+        progress: &dyn Progress,
+    ) -> Result<usize> {
+        let row = taken(table, &self.log_of_noises(table, options));
+        let seed = seed.child(2);
+        table.rows[row].fill(&self.extent, &self.all, seed, progress)?;
+        // Of those that have all fits by now.
+        let mut logs = self.log_of_noises(table, options);
+        for (log, row) in logs.iter_mut().zip(&table.rows) {
+            if row.found.is_none() {
+                *log = f64::NEG_INFINITY;
+            }
+        }
+        Ok(taken(table, &logs))
+    }
+
+    fn log_of_noises(
+        &self,
+        table: &Table<'_, P>,
+        options: &Options,
+    ) -> Vec<f64> {
+        let rows: Vec<Seen<'_>> = table.rows.iter().map(Seen::of).collect();
+        let judged = judge_all(&rows, &self.all, &options.odds);
+        let beforehand = Beforehand::of(&judged, &options.odds);
+        log_of_noises(&rows, &self.all, &beforehand)
     }
 
     /// What was found and decided, as plain data.
@@ -144,7 +176,7 @@ impl<P: Program> Subject<'_, P> {
             self.compared(table, row, after.as_ref(), options, seed)?;
         let law = self.law(table, row, &compared, options)?;
         let group = group(judged);
-        let none = &row.found.none;
+        let none = &row.noisy.none;
         let rivals = chosen.as_ref().map(|c| c.rivals(all, none));
         let mut diagnosis = Diagnosis {
             verdict: *verdict,
@@ -157,7 +189,7 @@ impl<P: Program> Subject<'_, P> {
             law,
             ..compared
         };
-        let forces = &row.found.forces;
+        let forces = &row.found()?.forces;
         self.write_out(&mut diagnosis, chosen.as_ref(), forces, options);
         diagnosis.forces = forces.clone();
         Ok(diagnosis)
@@ -167,6 +199,7 @@ impl<P: Program> Subject<'_, P> {
     fn decide(
         &self,
         table: &Table<'_, P>,
+        row: usize,
         options: &Options,
         seed: Seed,
     ) -> Result<Decision> {
@@ -176,11 +209,10 @@ impl<P: Program> Subject<'_, P> {
         let verdict = verdict(&judged);
         let beforehand = Beforehand::of(&judged, &options.odds);
         let logs = log_of_noises(&rows, all, &beforehand);
-        let row = taken(table, &logs);
         let choice = Choice {
             program: table.rows[row].noisy.program(),
             all,
-            found: &table.rows[row].found,
+            found: table.rows[row].found()?,
             open: table.rows[row].open,
             judged: &judged,
             beforehand,
@@ -227,7 +259,7 @@ impl<P: Program> Subject<'_, P> {
         if verdict != Verdict::Unexplained {
             return Ok(None);
         }
-        let (program, found) = (row.noisy.program(), &row.found);
+        let (program, found) = (row.noisy.program(), row.found()?);
         let force = most_probable(&found.forces)?;
         free_fit(program, &self.extent, force, &found.none).map(Some)
     }
@@ -259,7 +291,7 @@ impl<P: Program> Subject<'_, P> {
         };
         let corrected = compared.parameters.iter().filter(is_own);
         let corrected = corrected.filter(|p| is_of_law(p)).cloned();
-        let open = own_draws(row.noisy.program(), &row.found.forces)?;
+        let open = own_draws(row.noisy.program(), &row.found()?.forces)?;
         Ok(LawParameters {
             as_it_was: of(&table.as_it_was()?.none.draws),
             corrected: match added.is_empty() {
@@ -327,7 +359,7 @@ fn corrected_model<'a, P>(
         (Some(chosen), _) => (chosen.mechanisms(all), &chosen.fit, false),
         (None, Some((force, fit))) => (vec![force.as_ref()], fit, true),
         (None, None) if decision.verdict == Verdict::Errors => {
-            (Vec::new(), &row.found.none, false)
+            (Vec::new(), &row.noisy.none, false)
         }
         (None, None) => return None,
     };

@@ -277,7 +277,9 @@ pub(super) fn diagnosis() -> Diagnosis {
         verdict: Verdict::MissingPhysics,
         mismatch: vec![mismatch()],
         mechanisms: mechanisms(),
+        noise: noises(),
         selected: vec!["friction-patch".to_owned()],
+        selected_noise: "iid".to_owned(),
         group: vec!["friction-patch".to_owned()],
         rivals: vec![],
         improvement: improvement(),
@@ -302,6 +304,17 @@ pub(super) fn diagnosis() -> Diagnosis {
         seconds: 6.2,
         warnings: vec![],
     }
+}
+
+fn noises() -> Vec<JudgedNoise> {
+    let of = |name: &str, probability, log10_bayes_factor| JudgedNoise {
+        name: name.to_owned(),
+        probability,
+        log10_bayes_factor,
+        parameters: vec![parameter("sigma2", "m2/s2", 0.096, 0.015)],
+        ..JudgedNoise::default()
+    };
+    vec![of("iid", 0.7, 0.0), of("ou", 0.3, -0.4)]
 }
 
 /// Nothing is missing.

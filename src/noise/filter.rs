@@ -315,22 +315,32 @@ impl<K: Kind> Noise<K> for Whole<'_, K> {
         at: &Grid,
         residuals: &[Real<K>],
     ) -> Result<Real<K>, Stop> {
-        let mut total = Real::new(0.0);
-        if self.tails().is_some() {
-            self.walk(at, residuals, &mut |v| total += v.log_density)?;
-            return Ok(total);
-        }
         one_per_time(at, residuals)?;
+        let mut total = Real::new(0.0);
         let (mut squares, mut logs) = (total, LogSum::new());
+        // One plus each square over nu - 2, where there are tails.
+        let mut tails = LogSum::new();
+        let narrower = self.tails().map(|nu| 1.0 / (nu - 2.0));
         self.each(at, Residuals::Seen(residuals), |next| {
-            squares += next.error * next.error * next.precision;
+            let square = next.error * next.error * next.precision;
+            match narrower {
+                None => squares += square,
+                Some(narrower) => tails.add(square * narrower + 1.0),
+            }
             logs.add(next.variance);
             if let Some(log_size) = next.log_size {
                 total -= log_size;
             }
         })?;
-        let constant = LN_SQRT_2PI * at.len() as f64;
-        Ok(total - 0.5 * (squares + logs.total()) - constant)
+        total -= 0.5 * logs.total();
+        let n = at.len() as f64;
+        Ok(match self.tails() {
+            None => total - 0.5 * squares - LN_SQRT_2PI * n,
+            Some(nu) => {
+                let peak = log_peak(nu) - 0.5 * ((nu - 2.0) / nu).ln();
+                total - 0.5 * (nu + 1.0) * tails.total() + peak * n
+            }
+        })
     }
 
     fn draw(&self, at: &Grid, rng: &mut Rng) -> Result<Vec<f64>, Stop> {

@@ -50,27 +50,48 @@ pub(crate) fn check_odds(
     }
 }
 
-/// What was found under one noise.
-#[derive(Debug, Clone, Copy)]
+/// What the evidence says under one noise.
+#[derive(Debug, Clone)]
 pub(crate) struct Seen<'a> {
-    pub(crate) found: &'a Attribution,
-    /// ln of the evidence with a force of free form, where it was weighed.
-    pub(crate) open: Option<f64>,
+    none: &'a Fit,
+    /// ln of the evidence of each mechanism.
+    candidates: Vec<f64>,
+    /// The same of a force of free form, where it was weighed.
+    open: Option<f64>,
+    /// All fits, where they were made.
+    found: Option<&'a Attribution>,
 }
 
 impl<'a> Seen<'a> {
     pub(crate) fn of<P>(row: &'a Row<'_, P>) -> Self {
-        Self { found: &row.found, open: Some(row.open) }
+        Self {
+            none: &row.noisy.none,
+            candidates: row.candidates.clone(),
+            open: Some(row.open),
+            found: row.found.as_ref(),
+        }
+    }
+
+    fn alone(found: &'a Attribution) -> Self {
+        let logs = found.candidates.iter().map(|fit| fit.log_evidence);
+        Self {
+            none: &found.none,
+            candidates: logs.collect(),
+            open: (!found.forces.is_empty()).then(|| found.open_log()),
+            found: Some(found),
+        }
     }
 
     /// ln of the evidence of each hypothesis, variants averaged, by its name.
-    fn logs(&self, catalogue: &[Box<dyn Mechanism>]) -> Vec<(&str, f64)> {
-        let found = self.found;
-        let mut all = vec![(NONE, found.none.log_evidence)];
+    fn logs(
+        &self,
+        catalogue: &[Box<dyn Mechanism>],
+    ) -> Vec<(&'static str, f64)> {
+        let mut all = vec![(NONE, self.none.log_evidence)];
         for name in names(catalogue) {
-            let own = catalogue.iter().zip(&found.candidates);
+            let own = catalogue.iter().zip(&self.candidates);
             let own = own.filter(|(m, _)| m.name() == name);
-            let logs: Vec<f64> = own.map(|(_, f)| f.log_evidence).collect();
+            let logs: Vec<f64> = own.map(|(_, log)| *log).collect();
             all.push((name, log_mean(&logs)));
         }
         all.extend(self.open.map(|log| (UNKNOWN, log)));
@@ -85,8 +106,7 @@ pub fn judge(
     catalogue: &[Box<dyn Mechanism>],
     odds: &Odds,
 ) -> Vec<Judged> {
-    let open = (!found.forces.is_empty()).then(|| found.open_log());
-    judge_all(&[Seen { found, open }], catalogue, odds)
+    judge_all(&[Seen::alone(found)], catalogue, odds)
 }
 
 /// The same averaged over noises that are even beforehand.
@@ -124,7 +144,7 @@ pub(crate) fn log_of_noises(
 }
 
 fn none(rows: &[Seen<'_>]) -> Judged {
-    let fits: Vec<&Fit> = rows.iter().map(|row| &row.found.none).collect();
+    let fits: Vec<&Fit> = rows.iter().map(|row| row.none).collect();
     let logs: Vec<f64> = fits.iter().map(|fit| fit.log_evidence).collect();
     Judged {
         name: NONE.into(),
@@ -149,8 +169,9 @@ fn judged(
     catalogue: &[Box<dyn Mechanism>],
     rows: &[Seen<'_>],
 ) -> Judged {
-    let under = |i: usize| -> Vec<&Fit> {
-        rows.iter().map(|row| &row.found.candidates[i]).collect()
+    let fits = |i: usize| -> Vec<&Fit> {
+        let found = rows.iter().filter_map(|row| row.found);
+        found.map(|found| &found.candidates[i]).collect()
     };
     let mut variants = Vec::new();
     let mut best: Option<(&dyn Candidate, &Fit)> = None;
@@ -158,10 +179,10 @@ fn judged(
         if mechanism.name() != name {
             continue;
         }
-        let fits = under(i);
-        let logs: Vec<f64> = fits.iter().map(|f| f.log_evidence).collect();
+        let logs: Vec<f64> =
+            rows.iter().map(|row| row.candidates[i]).collect();
         variants.push((mechanism.label(), log_mean(&logs)));
-        let Some(fit) = most(&fits) else { continue };
+        let Some(fit) = most(&fits(i)) else { continue };
         if best.is_none_or(|(_, b)| fit.log_evidence > b.log_evidence) {
             best = Some((mechanism.as_ref(), fit));
         }
@@ -192,8 +213,9 @@ fn judged(
 fn unknown(rows: &[Seen<'_>]) -> Option<Judged> {
     let logs: Vec<f64> =
         rows.iter().map(|row| row.open).collect::<Option<_>>()?;
-    let forces = rows.iter().flat_map(|row| {
-        row.found.forces.iter().map(|force| (force, row.found.none.se))
+    let found = rows.iter().filter_map(|row| row.found);
+    let forces = found.flat_map(|found| {
+        found.forces.iter().map(|force| (force, found.none.se))
     });
     let more = |a: &(&FreeForce, f64), b: &(&FreeForce, f64)| {
         a.0.log_bayes_factor.total_cmp(&b.0.log_bayes_factor)

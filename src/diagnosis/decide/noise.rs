@@ -64,7 +64,8 @@ fn both<P>(noisy: &Noisy<'_, P>) -> f64 {
 
 /// The noise's parameters, with what has the most evidence under it.
 fn parameters<P: Program>(row: &Row<'_, P>) -> Vec<ParameterSummary> {
-    let all = [&row.found.none].into_iter().chain(&row.found.candidates);
+    let found = row.found.iter().flat_map(|found| &found.candidates);
+    let all = [&row.noisy.none].into_iter().chain(found);
     let more = |a: &&Fit, b: &&Fit| a.log_evidence.total_cmp(&b.log_evidence);
     let Some(fit) = all.max_by(more) else { return Vec::new() };
     let Ok(noise) = noise::parse(&row.noisy.name) else { return Vec::new() };

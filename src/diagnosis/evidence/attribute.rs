@@ -9,9 +9,7 @@ use super::screen::{COARSE, FINE, edge_grids};
 use crate::diagnosis::locate::{FreeForce, locate_all};
 use crate::draws::log_sum_exp;
 use crate::error::Result;
-use crate::infer::{
-    LaplaceMixture, Precision, Progress, Quiet, SearchSpace,
-};
+use crate::infer::{LaplaceMixture, Precision, Progress, SearchSpace};
 use crate::mechanism::{Extent, Mechanism};
 use crate::model::{Posterior, Program, With};
 use crate::seed::Seed;
@@ -97,67 +95,67 @@ pub(crate) fn attribute_beside<P: Program>(
     Ok(Attribution { none, forces, candidates })
 }
 
-/// Each mechanism weighed again under another noise of the same model: from
-/// where it is likely under the first one, with the model's own parameters at
-/// some places. What lies below a known evidence does not matter.
+/// By how much more, in ln, normal approximations of the peaks promise of each
+/// mechanism under another noise of the same model: from draws where it is
+/// likely under the first one, with what only the second has at some places.
 ///
 /// # Errors
-/// As [`attribute`].
-pub(crate) fn follow<P: Program>(
-    (first, found): (&P, &Attribution),
-    (program, owns): (&P, [&[f64]; 2]),
+/// A model that fails.
+pub(crate) fn promises<P: Program>(
+    (from, found): (&P, &Attribution),
+    (to, owns): (&P, [&[f64]; 2]),
     catalogue: &[Box<dyn Mechanism>],
-    known: f64,
     seed: Seed,
-) -> Result<Vec<Fit>> {
-    let weighing = Weighing { program, catalogue, seed };
-    let place = |mechanism: &dyn Mechanism| {
-        let mut all = catalogue.iter();
-        all.position(|one| one.label() == mechanism.label()).unwrap_or(0)
-    };
-    weighing.weighed(known, &Quiet, |mechanism, seed| {
-        let fit = &found.candidates[place(mechanism)];
-        let starts = carried(first, fit, program, owns, mechanism)?;
-        let space = SearchSpace { starts, ..SearchSpace::default() };
-        let backend = LaplaceMixture::within(space);
-        prospect(program, &[mechanism], backend, seed)
+) -> Result<Vec<f64>> {
+    let each = catalogue.par_iter().zip(&found.candidates);
+    each.map(|(mechanism, fit)| {
+        let mechanisms = [mechanism.as_ref()];
+        let (old, new) =
+            (With::new(from, &mechanisms), With::new(to, &mechanisms));
+        let (old, new) = (Posterior::new(&old)?, Posterior::new(&new)?);
+        let drawn = fit.draws.thinned(CARRIED).into_iter();
+        let drawn = drawn.map(|row| old.line(row));
+        let drawn = drawn.collect::<Result<Vec<_>>>()?;
+        let owns = owns.map(|own| (fit.added, own));
+        let starts = carried(&old, &drawn, &new, owns);
+        let log = |posterior: &Posterior<'_>, starts: Vec<Vec<f64>>| {
+            let space = SearchSpace { starts, ..SearchSpace::default() };
+            LaplaceMixture::within(space).outlook(posterior, seed)
+        };
+        let gain = log(&new, starts)? - log(&old, drawn)?;
+        // Where no climb arrives nothing is promised.
+        Ok(if gain.is_finite() { gain } else { f64::NEG_INFINITY })
     })
+    .collect()
 }
 
-/// Of how many draws under one noise climbs under the next start.
+/// From how many draws under one noise climbs start under the next.
 const CARRIED: usize = 8;
 
-/// Draws of a fit as places of the same model under another noise: what both
-/// have is carried over by its name, the rest begins at each of some places.
-fn carried<P: Program>(
-    from: &P,
-    fit: &Fit,
-    to: &P,
-    owns: [&[f64]; 2],
-    mechanism: &dyn Mechanism,
-) -> Result<Vec<Vec<f64>>> {
-    let (old, new) =
-        (With::new(from, &[mechanism]), With::new(to, &[mechanism]));
-    let (old, added) = (Posterior::new(&old)?, new.added());
-    let new = Posterior::new(&new)?;
+/// Places of one posterior as places of another: what both have is carried
+/// over by its name, the rest begins at each of some places of those after
+/// the first so many.
+fn carried(
+    old: &Posterior<'_>,
+    lines: &[Vec<f64>],
+    new: &Posterior<'_>,
+    owns: [(usize, &[f64]); 2],
+) -> Vec<Vec<f64>> {
     let place = |name: &str| {
         let mut all = old.parameters().iter();
         all.position(|p| p.name == name)
     };
     let names = new.parameters().iter().map(|p| place(&p.name));
     let places: Vec<Option<usize>> = names.collect();
-    let mut starts = Vec::new();
-    for row in fit.draws.thinned(CARRIED) {
-        let line = old.line(row)?;
-        for own in owns {
-            let of = |(i, place): (usize, &Option<usize>)| match place {
-                Some(place) => line[*place],
-                None => own[i - added],
-            };
-            starts.push(places.iter().enumerate().map(of).collect());
-        }
-    }
-    Ok(starts)
+    let each = lines.iter().flat_map(|line| owns.map(|own| (line, own)));
+    each.map(|(line, (added, own))| {
+        let of = |(i, place): (usize, &Option<usize>)| match place {
+            Some(place) => line[*place],
+            None => own[i - added],
+        };
+        places.iter().enumerate().map(of).collect()
+    })
+    .collect()
 }
 
 /// Mechanisms that are weighed one by one, in parallel.

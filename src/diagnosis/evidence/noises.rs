@@ -167,8 +167,9 @@ impl<'a, P: Program> Survey<'a, '_, P> {
     fn weighed(&self, name: &str, program: &P) -> Result<(Fit, Outlook)> {
         let letters = name.bytes().map(u64::from);
         let seed = letters.fold(self.seed, Seed::child);
-        let none = fit(program, &[], &LaplaceMixture::default(), seed)?;
-        let open = outlook(program, self.extent, none.own())?;
+        let backend = LaplaceMixture::default(); let t = std::time::Instant::now();
+        let none = fit(program, &[], &backend, seed.child(0))?;
+        let a = t.elapsed().as_secs_f64(); let open = outlook(program, self.extent, none.own(), seed.child(1))?; eprintln!("{name}: none {:.2} in {a:.2} s, open {:.2} in {:.2} s", none.log_evidence, open.log, t.elapsed().as_secs_f64() - a);
         Ok((none, open))
     }
 }

@@ -1,27 +1,29 @@
 //! The two-way table: every mechanism under every noise that is kept.
 
-use super::attribute::{Attribution, attribute_beside, follow};
+use super::attribute::{Attribution, attribute_beside, promises};
 use super::noises::{Noises, Noisy};
-use crate::diagnosis::locate::locate_all;
 use crate::error::{Error, Result};
 use crate::infer::Progress;
 use crate::mechanism::{Extent, Mechanism};
 use crate::model::Program;
 use crate::seed::Seed;
 
-/// What was found under one noise.
+/// What the evidence says under one noise.
 #[derive(Debug)]
 pub(crate) struct Row<'a, P> {
     pub(crate) noisy: Noisy<'a, P>,
-    pub(crate) found: Attribution,
-    /// ln of the evidence with a force of free form.
+    /// ln of the evidence with each mechanism of the catalogue.
+    pub(crate) candidates: Vec<f64>,
+    /// The same with a force of free form.
     pub(crate) open: f64,
+    /// All fits, where they were made under this noise.
+    pub(crate) found: Option<Attribution>,
 }
 
-/// What was found under every noise that is kept.
+/// What the evidence says under every noise that is kept.
 #[derive(Debug)]
 pub(crate) struct Table<'a, P> {
-    /// The noises that are kept.
+    /// The noises that are kept; the first has all fits.
     pub(crate) rows: Vec<Row<'a, P>>,
     /// The named noise, where it is not kept.
     dropped: Option<Noisy<'a, P>>,
@@ -29,7 +31,7 @@ pub(crate) struct Table<'a, P> {
 
 impl<'a, P: Program> Table<'a, P> {
     /// Weighs every mechanism and the free-form force under the likeliest
-    /// noise, and from where they are likely there under the others.
+    /// noise, and what they promise from there under the others.
     ///
     /// # Errors
     /// An improper prior, or a model that fails.
@@ -42,15 +44,17 @@ impl<'a, P: Program> Table<'a, P> {
     ) -> Result<Self> {
         let Noises { kept, dropped } = noises;
         let mut kept = kept.into_iter();
-        let lead = kept.next().ok_or_else(no_noise)?;
-        let lead = Row::lead(lead, extent, catalogue, seed, progress)?;
-        let mut rows = vec![lead];
+        let first = Row::bare(kept.next().ok_or_else(no_noise)?);
+        let mut table = Self { rows: vec![first], dropped };
+        table.rows[0].fill(extent, catalogue, seed, progress)?;
+        progress.begin("weighing them under other noises", None);
         for (i, noisy) in kept.enumerate() {
-            progress.begin("weighing them under other noises", None);
             let seed = seed.child(100 + i as u64);
-            rows.push(Row::following(noisy, &rows[0], catalogue, seed)?);
+            let first = &table.rows[0];
+            let row = Row::beside(noisy, first, catalogue, seed)?;
+            table.rows.push(row);
         }
-        Ok(Self { rows, dropped })
+        Ok(table)
     }
 
     /// The model as it was, under the noise that it names.
@@ -71,58 +75,65 @@ fn no_noise() -> Error {
 }
 
 impl<'a, P: Program> Row<'a, P> {
-    fn lead(
-        noisy: Noisy<'a, P>,
+    /// Without mechanisms yet.
+    fn bare(noisy: Noisy<'a, P>) -> Self {
+        let open = noisy.open.log;
+        Self { noisy, candidates: Vec::new(), open, found: None }
+    }
+
+    /// Makes all fits, where there are none yet.
+    ///
+    /// # Errors
+    /// An improper prior, or a model that fails.
+    pub(crate) fn fill(
+        &mut self,
         extent: &Extent,
         catalogue: &[Box<dyn Mechanism>],
         seed: Seed,
         progress: &dyn Progress,
-    ) -> Result<Self> {
-        let none = noisy.none.clone();
+    ) -> Result<()> {
+        if self.found.is_some() {
+            return Ok(());
+        }
         let found = attribute_beside(
-            noisy.program(),
-            none,
+            self.noisy.program(),
+            self.noisy.none.clone(),
             Some(extent),
             catalogue,
             seed,
             progress,
         )?;
-        let open = found.open_log();
-        Ok(Self { noisy, found, open })
+        let logs = found.candidates.iter().map(|fit| fit.log_evidence);
+        self.candidates = logs.collect();
+        self.open = found.open_log();
+        self.found = Some(found);
+        Ok(())
     }
 
-    /// What the force brings is that of the first row, less what it brings
-    /// more there by the outlooks.
-    fn following(
+    /// With the evidences of another row, each more by as much as the normal
+    /// approximations about the likeliest draws there promise more.
+    fn beside(
         noisy: Noisy<'a, P>,
-        lead: &Self,
+        first: &Self,
         catalogue: &[Box<dyn Mechanism>],
         seed: Seed,
     ) -> Result<Self> {
-        let known = lead.found.candidates.iter().map(|fit| fit.log_evidence);
-        let candidates = follow(
-            (lead.noisy.program(), &lead.found),
-            (noisy.program(), noisy.own()),
-            catalogue,
-            known.fold(noisy.none.log_evidence, f64::max),
-            seed,
-        )?;
-        let open = lead.open + noisy.open.log - lead.noisy.open.log;
-        let none = noisy.none.clone();
-        let found = Attribution { none, forces: Vec::new(), candidates };
-        Ok(Self { noisy, found, open })
+        let found = first.found()?;
+        let from = (first.noisy.program(), found);
+        let to = (noisy.program(), noisy.own());
+        let gains = promises(from, to, catalogue, seed)?.into_iter();
+        let known = first.candidates.iter().zip(gains);
+        let candidates = known.map(|(known, gain)| known + gain).collect();
+        let open = first.open + noisy.open.log - first.noisy.open.log;
+        Ok(Self { noisy, candidates, open, found: None })
     }
 
-    /// Infers the free-form force, where it is not known yet.
+    /// All fits.
     ///
     /// # Errors
-    /// A model that fails.
-    pub(crate) fn opened(&mut self, extent: &Extent, seed: Seed) -> Result<()> {
-        if self.found.forces.is_empty() {
-            let program = self.noisy.program();
-            self.found.forces =
-                locate_all(program, extent, &self.found.none, seed)?;
-        }
-        Ok(())
+    /// None were made under this noise.
+    pub(crate) fn found(&self) -> Result<&Attribution> {
+        let missing = || Error::inference("a noise without fits");
+        self.found.as_ref().ok_or_else(missing)
     }
 }

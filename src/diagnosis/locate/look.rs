@@ -6,7 +6,6 @@ use rayon::prelude::*;
 
 use super::process::{CELLS, Process};
 use super::tangent::{Cells, Tangent, Waves};
-use crate::draws::log_sum_exp;
 use crate::error::{Error, Result};
 use crate::infer::{Climb, Landscape, Mixture, Slope};
 use crate::mechanism::Extent;
@@ -41,7 +40,7 @@ pub(super) struct Look {
     /// About minus the Hessian of the own parameters' density.
     precision: DMatrix<f64>,
     /// ln of about what it integrates to, the process's prior included.
-    log_evidence: f64,
+    pub(super) log_evidence: f64,
 }
 
 impl Look {
@@ -55,15 +54,6 @@ impl Look {
         self.process.distance(process) / SPACING.powi(2)
             + off.dot(&(&self.precision * &off))
     }
-}
-
-/// About what a free-form force brings, without a draw.
-#[derive(Debug, Clone)]
-pub(crate) struct Outlook {
-    /// About ln of the evidence with it.
-    pub(crate) log: f64,
-    /// The model's own parameters where it is likeliest, on the real line.
-    pub(crate) own: Vec<f64>,
 }
 
 /// A model with a force of cells, over the extent of its events.
@@ -93,22 +83,6 @@ impl Sought<'_, '_> {
             }
         }
         if found.is_empty() { Err(no_mode()) } else { Ok(found) }
-    }
-
-    /// About what all the places of the grid hold together, and where the own
-    /// parameters are at the best of them.
-    ///
-    /// # Errors
-    /// As [`Sought::looks`].
-    pub(super) fn outlook(&self, own: &[f64]) -> Result<Outlook> {
-        let looks = self.looks(own)?;
-        // Places lie 1 apart in both of the process's numbers.
-        let log = log_sum_exp(looks.iter().map(|look| look.log_evidence));
-        let higher = |a: &&Look, b: &&Look| {
-            a.log_evidence.total_cmp(&b.log_evidence)
-        };
-        let best = looks.iter().max_by(higher).ok_or_else(no_mode)?;
-        Ok(Outlook { log, own: best.tangent.own.as_slice().to_vec() })
     }
 
     /// The looks at some lengths, from both sides.

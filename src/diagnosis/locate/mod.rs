@@ -27,8 +27,7 @@ use crate::seed::Seed;
 
 use free_form::{FreeForm, range};
 pub(super) use free_form::{NOUN, SAYS};
-pub(crate) use look::Outlook;
-use look::{Sought, proposal};
+use look::{Look, Sought, proposal};
 use marginal::Marginal;
 pub use process::CELLS;
 pub(super) use process::Process;
@@ -154,8 +153,17 @@ pub fn locate<P: Program>(
     located(program, extent, &[axis], none, seed).map(|mut all| all.remove(0))
 }
 
+/// About what a free-form force brings.
+#[derive(Debug, Clone)]
+pub(crate) struct Outlook {
+    /// About ln of the evidence with it.
+    pub(crate) log: f64,
+    /// The model's own parameters where it is likeliest, on the real line.
+    pub(crate) own: Vec<f64>,
+}
+
 /// About what a free-form force over distance brings to a model whose own
-/// parameters are likely there, on the real line.
+/// parameters are likely there, on the real line: from few draws.
 ///
 /// # Errors
 /// As [`locate`].
@@ -163,11 +171,24 @@ pub(crate) fn outlook<P: Program>(
     program: &P,
     extent: &Extent,
     own: &[f64],
+    seed: Seed,
 ) -> Result<Outlook> {
     let form = FreeForm::cells(extent, Axis::Place);
     let with = With::new(program, &[&form]);
     let posterior = Posterior::new(&with)?;
-    Sought { cells: Cells(&posterior), extent }.outlook(own)
+    let sought = Sought { cells: Cells(&posterior), extent };
+    let looks = sought.looks(own)?;
+    let higher =
+        |a: &&Look, b: &&Look| a.log_evidence.total_cmp(&b.log_evidence);
+    let best = looks.iter().max_by(higher);
+    let own = best.map_or_else(Vec::new, |look| {
+        look.tangent.own.as_slice().to_vec()
+    });
+    let mixture = proposal(&looks)?;
+    let marginal = Marginal { sought, looks, shared: program.events() > 1 };
+    let learned = learn(&marginal, mixture, FEW, seed.child(0))?;
+    let found = integrated(&marginal, &learned, FEW, seed.child(1))?;
+    Ok(Outlook { log: found.sum.log, own })
 }
 
 /// The same along every axis; most sharply where the force is likely.

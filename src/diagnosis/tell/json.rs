@@ -6,8 +6,8 @@ use serde_json::{Map, Value, json};
 
 use crate::diagnosis::locate::FreeForce;
 use crate::diagnosis::{
-    Baseline, Corrected, Diagnosis, Improvement, Judged, LawParameters,
-    Mismatch, ParameterSummary, Rival,
+    Baseline, Corrected, Diagnosis, Improvement, Judged, JudgedNoise,
+    LawParameters, Mismatch, ParameterSummary, Rival,
 };
 use crate::physics::forces::Axis;
 
@@ -77,6 +77,17 @@ fn judged_json(m: &Judged) -> Value {
     value
 }
 
+fn noise_json(noise: &JudgedNoise) -> Value {
+    json!({
+        "name": noise.name,
+        "tails": if noise.has_tails { "student" } else { "normal" },
+        "size": if noise.grows { "growing" } else { "equal" },
+        "probability": noise.probability,
+        "log10_bayes_factor": noise.log10_bayes_factor,
+        "parameters": parameters_json(&noise.parameters),
+    })
+}
+
 fn rival_json(rival: &Rival) -> Value {
     json!({
         "names": rival.names,
@@ -140,13 +151,15 @@ impl Diagnosis {
     /// `diagnosis.json`.
     pub fn json(&self) -> Value {
         json!({
-            "schema": 1,
+            "schema": 2,
             "event": self.event,
             "baseline": baseline_json(&self.baseline),
             "verdict": self.verdict.name(),
             "mismatch": list(&self.mismatch, mismatch_json),
             "mechanisms": list(&self.mechanisms, judged_json),
+            "noise": list(&self.noise, noise_json),
             "selected": self.selected,
+            "selected_noise": self.selected_noise,
             "group": self.group,
             "rivals": list(&self.rivals, rival_json),
             "improvement": improvement_json(&self.improvement),

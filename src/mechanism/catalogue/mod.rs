@@ -68,7 +68,7 @@ const DRIFT: f64 = 2.0;
 /// variants one after the other.
 fn built_in(extent: &Extent) -> Vec<Box<dyn Mechanism>> {
     let extent = *extent;
-    let (place, time, speed) = (Axis::Place, Axis::Time, Axis::Speed);
+    let (place, time) = (Axis::Place, Axis::Time);
     let mut all: Vec<Box<dyn Mechanism>> = vec![
         Box::new(TurbulentDrag { extent }),
         Box::new(ViscousDrag { extent }),
@@ -80,10 +80,6 @@ fn built_in(extent: &Extent) -> Vec<Box<dyn Mechanism>> {
         Box::new(ClockOffset),
         Box::new(VelocityScale),
         Box::new(SensorDrift { extent }),
-        Box::new(Ar1),
-        Box::new(HeavyTails),
-        Box::new(UnequalVariance { extent, axis: time }),
-        Box::new(UnequalVariance { extent, axis: speed }),
     ];
     if extent.carried {
         all.push(Box::new(VelocityWeakening { extent }));
