@@ -34,6 +34,12 @@ impl Seed {
         Self(mix(self.0 ^ mix(index.wrapping_add(0x9e37_79b9_7f4a_7c15))))
     }
 
+    /// The seed of the part of this one's work that has a name.
+    #[must_use]
+    pub fn called(self, name: &str) -> Self {
+        name.bytes().map(u64::from).fold(self, Self::child)
+    }
+
     /// A generator that starts here.
     pub fn rng(self) -> Rng {
         Rng::seed_from_u64(self.0)

@@ -45,8 +45,7 @@ pub fn cases(count: usize, seed: u64, mix: Mix) -> Result<Vec<Case>> {
 /// A kind's own branch of the seed, so that its cases do not depend on how
 /// many there are of others.
 pub(super) fn branch(seed: u64, kind: &Kind) -> Seed {
-    let letters = kind.name.bytes().map(u64::from);
-    letters.fold(Seed::new(seed).child(0xc4a1), Seed::child)
+    Seed::new(seed).child(0xc4a1).called(kind.name)
 }
 
 #[cfg(test)]

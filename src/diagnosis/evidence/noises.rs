@@ -11,11 +11,11 @@ use std::ops::Deref;
 
 use rayon::prelude::*;
 
-use super::fit::{Fit, fit};
+use super::fit::{Fit, Prospect, prospect};
 use crate::diagnosis::locate::{Outlook, outlook};
 use crate::draws::log_sum_exp;
 use crate::error::Result;
-use crate::infer::LaplaceMixture;
+use crate::infer::{LaplaceMixture, Precision};
 use crate::mechanism::Extent;
 use crate::model::{Posterior, Program};
 use crate::noise::Form;
@@ -57,9 +57,23 @@ pub(crate) struct Noisy<'a, P> {
     /// The noise, as an event file names it.
     pub(crate) name: String,
     program: Held<'a, P>,
+    /// The model without physics.
     pub(crate) none: Fit,
+    /// With a force of free form.
     pub(crate) open: Outlook,
 }
+
+/// The same before it is known whether it is kept.
+#[derive(Debug)]
+struct Weighed<'a, P> {
+    name: String,
+    program: Held<'a, P>,
+    none: Looked,
+    open: Outlook,
+}
+
+/// The model without physics: what a search found of it, and a rough fit.
+type Looked = (Prospect, Fit);
 
 impl<P> Noisy<'_, P> {
     pub(crate) fn program(&self) -> &P {
@@ -75,14 +89,37 @@ impl<P> Noisy<'_, P> {
     pub(crate) fn is_named(&self) -> bool {
         matches!(self.program, Held::Named(_))
     }
+}
+
+impl<'a, P: Program> Weighed<'a, P> {
+    fn is_named(&self) -> bool {
+        matches!(self.program, Held::Named(_))
+    }
 
     fn form(&self) -> Form {
         Form::of(&self.name)
     }
 
-    /// ln of its evidence in either way: without physics, and with a force.
+    /// About ln of its evidence in either way: without physics, and with a
+    /// force.
     fn logs(&self) -> [f64; 2] {
-        [self.none.log_evidence, self.open.log]
+        [self.none.1.log_evidence, self.open.log]
+    }
+
+    /// The same in both ways; that of the named one counts tenfold, so that
+    /// others take its place only where they are better by far.
+    fn worth(&self) -> f64 {
+        let named = if self.is_named() { LN_10 } else { 0.0 };
+        log_sum_exp(self.logs().into_iter()) + named
+    }
+
+    fn fitted(self, seed: Seed) -> Result<Noisy<'a, P>> {
+        let Self { name, program, none: (none, _), open } = self;
+        let everywhere = f64::NEG_INFINITY;
+        let none = none.pursued(&*program, &[], everywhere, seed.child(0))?;
+        let precision = Precision::Sharp;
+        let none = none.fit(&*program, &[], precision, seed.child(1))?;
+        Ok(Noisy { name, program, none, open })
     }
 }
 
@@ -114,7 +151,7 @@ pub(crate) fn noises<'a, P: Program>(
         further.retain(|one| pays(one, &all));
         all.extend(further);
     }
-    Ok(kept(all))
+    kept(all, seed)
 }
 
 /// Weighs a program under many noises.
@@ -130,8 +167,8 @@ impl<'a, P: Program> Survey<'a, '_, P> {
     fn others(
         &self,
         forms: Vec<Form>,
-        known: &[Noisy<'a, P>],
-    ) -> Result<Vec<Noisy<'a, P>>> {
+        known: &[Weighed<'a, P>],
+    ) -> Result<Vec<Weighed<'a, P>>> {
         let is_new = |form: &Form| {
             !known.iter().any(|one| one.form().is_like(form))
         };
@@ -143,7 +180,7 @@ impl<'a, P: Program> Survey<'a, '_, P> {
             let allowed = |program: &P| Posterior::new(program).is_ok();
             new.extend(other.filter(allowed).map(|program| (name, program)));
         }
-        let weighed: Vec<Result<(Fit, Outlook)>> = new
+        let weighed: Vec<Result<(Looked, Outlook)>> = new
             .par_iter()
             .map(|(name, program)| self.weighed(name, program))
             .collect();
@@ -152,31 +189,36 @@ impl<'a, P: Program> Survey<'a, '_, P> {
         let found = found.filter_map(|((name, program), weighed)| {
             let (none, open) = weighed.ok()?;
             let program = Held::Other(Box::new(program));
-            Some(Noisy { name, program, none, open })
+            Some(Weighed { name, program, none, open })
         });
         Ok(found.collect())
     }
 
     /// The named one.
-    fn named(&self, name: &str) -> Result<Noisy<'a, P>> {
+    fn named(&self, name: &str) -> Result<Weighed<'a, P>> {
         let (none, open) = self.weighed(name, self.program)?;
         let program = Held::Named(self.program);
-        Ok(Noisy { name: name.to_owned(), program, none, open })
+        Ok(Weighed { name: name.to_owned(), program, none, open })
     }
 
-    fn weighed(&self, name: &str, program: &P) -> Result<(Fit, Outlook)> {
-        let letters = name.bytes().map(u64::from);
-        let seed = letters.fold(self.seed, Seed::child);
-        let backend = LaplaceMixture::default(); let t = std::time::Instant::now();
-        let none = fit(program, &[], &backend, seed.child(0))?;
-        let a = t.elapsed().as_secs_f64(); let open = outlook(program, self.extent, none.own(), seed.child(1))?; eprintln!("{name}: none {:.2} in {a:.2} s, open {:.2} in {:.2} s", none.log_evidence, open.log, t.elapsed().as_secs_f64() - a);
-        Ok((none, open))
+    fn weighed(
+        &self,
+        name: &str,
+        program: &P,
+    ) -> Result<(Looked, Outlook)> {
+        let seed = self.seed.called(name);
+        let t=std::time::Instant::now();let backend = LaplaceMixture::default();
+        let none = prospect(program, &[], backend, seed.child(0))?;
+        let rough = Precision::Rough;
+        let fit = none.fit(program, &[], rough, seed.child(1))?;
+let a = t.elapsed().as_secs_f64();        let open = outlook(program, self.extent, fit.own(), seed.child(2))?;eprintln!("{name}: none {:.2} in {a:.2} s, open {:.2} in {:.2} s", fit.log_evidence, open.log, t.elapsed().as_secs_f64() - a);
+        Ok(((none, fit), open))
     }
 }
 
 /// How far each is below the best of all, in ln, in the way that suits it
 /// better.
-fn short<P>(one: &Noisy<'_, P>, all: &[Noisy<'_, P>]) -> f64 {
+fn short<P: Program>(one: &Weighed<'_, P>, all: &[Weighed<'_, P>]) -> f64 {
     let best = |way: usize| {
         let logs = all.iter().map(|other| other.logs()[way]);
         logs.fold(f64::NEG_INFINITY, f64::max)
@@ -186,9 +228,9 @@ fn short<P>(one: &Noisy<'_, P>, all: &[Noisy<'_, P>]) -> f64 {
 }
 
 /// The noises that are near the best, each with tails and with growth.
-fn decorated<P>(all: &[Noisy<'_, P>]) -> Vec<Form> {
+fn decorated<P: Program>(all: &[Weighed<'_, P>]) -> Vec<Form> {
     let near = all.iter().filter(|one| short(one, all) < NEAR * LN_10);
-    let with = |one: &Noisy<'_, P>| {
+    let with = |one: &Weighed<'_, P>| {
         let form = one.form();
         [
             Form { has_tails: true, ..form.clone() },
@@ -199,8 +241,8 @@ fn decorated<P>(all: &[Noisy<'_, P>]) -> Vec<Form> {
 }
 
 /// The noises with tails and growth, where both of them pay.
-fn doubly_decorated<P>(all: &[Noisy<'_, P>]) -> Vec<Form> {
-    let forms: Vec<Form> = all.iter().map(Noisy::form).collect();
+fn doubly_decorated<P: Program>(all: &[Weighed<'_, P>]) -> Vec<Form> {
+    let forms: Vec<Form> = all.iter().map(Weighed::form).collect();
     let tailed = |form: &&Form| {
         let alike = |other: &Form| other.plain() == form.plain();
         form.grows && forms.iter().any(|f| f.has_tails && alike(f))
@@ -211,7 +253,7 @@ fn doubly_decorated<P>(all: &[Noisy<'_, P>]) -> Vec<Form> {
 
 /// Whether it has more evidence than each simpler noise of its memory, in
 /// either way.
-fn pays<P>(one: &Noisy<'_, P>, all: &[Noisy<'_, P>]) -> bool {
+fn pays<P: Program>(one: &Weighed<'_, P>, all: &[Weighed<'_, P>]) -> bool {
     let form = one.form();
     let simpler = all.iter().filter(|other| {
         let other = other.form();
@@ -226,21 +268,23 @@ fn pays<P>(one: &Noisy<'_, P>, all: &[Noisy<'_, P>]) -> bool {
 }
 
 /// The best of those that are near the best, the named one among them where
-/// it is near.
-fn kept<P>(all: Vec<Noisy<'_, P>>) -> Noises<'_, P> {
-    let near: Vec<bool> =
-        all.iter().map(|one| short(one, &all) < NEAR * LN_10).collect();
+/// it is near; each is fitted.
+fn kept<P: Program>(
+    mut all: Vec<Weighed<'_, P>>,
+    seed: Seed,
+) -> Result<Noises<'_, P>> {
+    all.sort_by(|a, b| b.worth().total_cmp(&a.worth()));
+    let is_near = |one| short(one, &all) < NEAR * LN_10;
+    let near: Vec<bool> = all.iter().map(is_near).collect();
     let (mut kept, mut dropped) = (Vec::new(), None);
     for (one, near) in all.into_iter().zip(near) {
-        if near {
-            kept.push(one);
-        } else if one.is_named() {
-            dropped = Some(one);
+        let seed = seed.called(&one.name).child(3);
+        let is_named = one.is_named();
+        if near && (kept.len() < MOST || is_named) {
+            kept.push(one.fitted(seed)?);
+        } else if is_named {
+            dropped = Some(one.fitted(seed)?);
         }
     }
-    let both = |one: &Noisy<'_, P>| log_sum_exp(one.logs().into_iter());
-    kept.sort_by(|a, b| both(b).total_cmp(&both(a)));
-    let mut places = 0..;
-    kept.retain(|one| places.next() < Some(MOST) || one.is_named());
-    Noises { kept, dropped }
+    Ok(Noises { kept, dropped })
 }

@@ -42,6 +42,9 @@ const OWN: usize = 400;
 /// by so much in ln.
 const FEW: Effort = Effort { last: (60, 60), ..EFFORT };
 const FAR: f64 = 3.0;
+/// The same where only about how much it brings is asked for.
+const GLANCE: Effort =
+    Effort { learning: 30, rounds: 2, last: (40, 40), ..EFFORT };
 
 /// The free-form force as a mechanism of its own, with the fit that it has.
 ///
@@ -186,8 +189,8 @@ pub(crate) fn outlook<P: Program>(
     });
     let mixture = proposal(&looks)?;
     let marginal = Marginal { sought, looks, shared: program.events() > 1 };
-    let learned = learn(&marginal, mixture, FEW, seed.child(0))?;
-    let found = integrated(&marginal, &learned, FEW, seed.child(1))?;
+    let learned = learn(&marginal, mixture, GLANCE, seed.child(0))?;
+    let found = integrated(&marginal, &learned, GLANCE, seed.child(1))?;
     Ok(Outlook { log: found.sum.log, own })
 }
 
