@@ -115,10 +115,7 @@ impl<'a, P: Program> Weighed<'a, P> {
 
     fn fitted(self, seed: Seed) -> Result<Noisy<'a, P>> {
         let Self { name, program, none: (none, _), open } = self;
-        let everywhere = f64::NEG_INFINITY;
-        let none = none.pursued(&*program, &[], everywhere, seed.child(0))?;
-        let precision = Precision::Sharp;
-        let none = none.fit(&*program, &[], precision, seed.child(1))?;
+        let none = none.fit(&*program, &[], Precision::Sharp, seed)?;
         Ok(Noisy { name, program, none, open })
     }
 }
@@ -207,11 +204,13 @@ impl<'a, P: Program> Survey<'a, '_, P> {
         program: &P,
     ) -> Result<(Looked, Outlook)> {
         let seed = self.seed.called(name);
-        let t=std::time::Instant::now();let backend = LaplaceMixture::default();
+        let backend = LaplaceMixture::default();
         let none = prospect(program, &[], backend, seed.child(0))?;
+        let everywhere = f64::NEG_INFINITY;
+        let none = none.pursued(program, &[], everywhere, seed.child(1))?;
         let rough = Precision::Rough;
-        let fit = none.fit(program, &[], rough, seed.child(1))?;
-let a = t.elapsed().as_secs_f64();        let open = outlook(program, self.extent, fit.own(), seed.child(2))?;eprintln!("{name}: none {:.2} in {a:.2} s, open {:.2} in {:.2} s", fit.log_evidence, open.log, t.elapsed().as_secs_f64() - a);
+        let fit = none.fit(program, &[], rough, seed.child(2))?;
+        let open = outlook(program, self.extent, fit.own(), seed.child(3))?;
         Ok(((none, fit), open))
     }
 }
@@ -278,7 +277,7 @@ fn kept<P: Program>(
     let near: Vec<bool> = all.iter().map(is_near).collect();
     let (mut kept, mut dropped) = (Vec::new(), None);
     for (one, near) in all.into_iter().zip(near) {
-        let seed = seed.called(&one.name).child(3);
+        let seed = seed.called(&one.name).child(4);
         let is_named = one.is_named();
         if near && (kept.len() < MOST || is_named) {
             kept.push(one.fitted(seed)?);
