@@ -1,5 +1,4 @@
-//! Changed motion against closed forms, another integrator and differences;
-//! altered noise against the noises that it stands for.
+//! Changed motion against closed forms, another integrator and differences.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
@@ -8,9 +7,7 @@ use std::collections::BTreeMap;
 use couloir::mechanism::Mechanism;
 use couloir::mechanism::catalogue::{catalogue, find};
 use couloir::model::{Assembled, Point, Posterior};
-use couloir::noise::{
-    self, Alteration, Altered, Ar, Grid, Iid, Noise, Student,
-};
+use couloir::noise;
 use couloir::observe::Extent;
 use couloir::physics::forces::{Axis, Forces, Range, Shape, Stretch, Term};
 use couloir::physics::friction::{LAWS, Laws};
@@ -21,7 +18,7 @@ use couloir::physics::{
 };
 use couloir::prior::AnyPrior;
 use couloir::scalar::{Grad, Kind, Plain, Real};
-use couloir::{Event, Seed, Series};
+use couloir::{Event, Series};
 
 /// A release.
 const AT: (f64, f64) = (0.0, 1.0);
@@ -420,120 +417,5 @@ fn a_clock_ahead_and_a_mean_over_a_window() {
         assert!((early[i] - a * (t + 0.7)).abs() < 1e-9);
         let half = 0.5 * t.min(1.5);
         assert!((mean[i] - a * (t - half)).abs() < 1e-9, "t = {t}");
-    }
-}
-
-type Number = Real<Plain>;
-
-fn altered<'a>(
-    base: &'a Iid<Number>,
-    change: [f64; 3],
-    covariate: &'a [Number],
-) -> Altered<'a, Plain, Iid<Number>> {
-    let [phi, tail, spread] = change.map(Real::new);
-    Altered { base, change: Alteration { phi, tail, spread }, covariate }
-}
-
-/// Some residuals.
-fn residuals(n: usize) -> Vec<Number> {
-    (0..n).map(|i| Real::new((1.7 * i as f64).sin() * 1.3)).collect()
-}
-
-fn total(noise: &impl Noise<Plain>, at: &Grid, r: &[Number]) -> f64 {
-    noise.log_likelihood(at, r).unwrap().value()
-}
-
-#[test]
-fn correlated_errors_are_ar1_even_over_gaps() {
-    let base = Iid { sigma2: Real::new(0.7) };
-    let even: Vec<f64> = (0..40).map(|i| 0.25 * f64::from(i)).collect();
-    let mut gaps = even.clone();
-    gaps.drain(11..15);
-    gaps.remove(20);
-    for times in [even, gaps] {
-        let r = residuals(times.len());
-        let at = Grid::new(times, None);
-        for phi in [0.0, 0.4, 0.97] {
-            let noise = altered(&base, [phi, 0.0, 0.0], &[]);
-            let phi = [Real::new(phi)].into_iter().collect();
-            let ar = Ar { phi, sigma2: base.sigma2 };
-            let (a, b) = (total(&noise, &at, &r), total(&ar, &at, &r));
-            assert!((a - b).abs() < 1e-9 * b.abs(), "{a} {b}");
-        }
-    }
-}
-
-#[test]
-fn heavy_tails_are_students() {
-    let base = Iid { sigma2: Real::new(0.7) };
-    let at = Grid::new((0..30).map(f64::from).collect(), None);
-    let r = residuals(30);
-    for tail in [0.05, 0.25, 0.5] {
-        let noise = altered(&base, [0.0, tail, 0.0], &[]);
-        let (dof, scale) = (Real::new(1.0 / tail), base.sigma2.sqrt());
-        let (a, b) =
-            (total(&noise, &at, &r), total(&Student { dof, scale }, &at, &r));
-        assert!((a - b).abs() < 1e-9 * b.abs(), "{a} {b}");
-    }
-}
-
-#[test]
-fn unequal_variance_is_that_by_hand() {
-    let base = Iid { sigma2: Real::new(0.7) };
-    let at = Grid::new((0..30).map(f64::from).collect(), None);
-    let r = residuals(30);
-    let covariate: Vec<Number> =
-        (0..30).map(|i| Real::new(f64::from(i) / 30.0 - 0.5)).collect();
-    let noise = altered(&base, [0.0, 0.0, 1.4], &covariate);
-    let by_hand: f64 = r
-        .iter()
-        .zip(&covariate)
-        .map(|(r, x)| {
-            let variance = 0.7 * (2.0 * 1.4 * x.value()).exp();
-            let square = r.value().powi(2) / variance;
-            -0.5 * (std::f64::consts::TAU * variance).ln() - 0.5 * square
-        })
-        .sum();
-    assert!((total(&noise, &at, &r) - by_hand).abs() < 1e-9);
-}
-
-/// The mean product of values `lag` apart, over many draws.
-fn covariance(draws: &[Vec<f64>], i: usize, lag: usize) -> f64 {
-    let products = draws.iter().map(|d| d[i] * d[i + lag]);
-    products.sum::<f64>() / draws.len() as f64
-}
-
-#[test]
-fn draws_have_the_variance_and_the_correlation() {
-    let base = Iid { sigma2: Real::new(0.7) };
-    let mut times: Vec<f64> = (0..8).map(f64::from).collect();
-    times.remove(4);
-    let at = Grid::new(times, None);
-    let covariate: Vec<Number> =
-        (0..7).map(|i| Real::new(f64::from(i) / 6.0 - 0.5)).collect();
-    let mut rng = Seed::new(5).rng();
-    let mut drawn = |change: [f64; 3]| -> Vec<Vec<f64>> {
-        let noise = altered(&base, change, &covariate);
-        (0..40_000).map(|_| noise.draw(&at, &mut rng).unwrap()).collect()
-    };
-    let correlated = drawn([0.8, 0.0, 0.0]);
-    let stationary = 0.7 / (1.0 - 0.64);
-    for i in 0..5 {
-        // The value at t = 4 is missing.
-        let apart = if i == 3 { 2 } else { 1 };
-        let expected = stationary * 0.8_f64.powi(apart);
-        assert!(
-            (covariance(&correlated, i, 0) / stationary - 1.0).abs() < 0.04
-        );
-        assert!((covariance(&correlated, i, 1) / expected - 1.0).abs() < 0.05);
-    }
-    // dof = 10: variance 10/8.
-    let tailed = drawn([0.0, 0.1, 0.0]);
-    assert!((covariance(&tailed, 2, 0) / (0.7 * 1.25) - 1.0).abs() < 0.04);
-    assert!(covariance(&tailed, 2, 1).abs() < 0.02);
-    let uneven = drawn([0.0, 0.0, 1.4]);
-    for (i, x) in covariate.iter().enumerate() {
-        let expected = 0.7 * (2.8 * x.value()).exp();
-        assert!((covariance(&uneven, i, 0) / expected - 1.0).abs() < 0.04);
     }
 }

@@ -66,10 +66,6 @@ const PRIORS: &[(&str, &[&str])] = &[
     ("clock-offset", &["ahead s Normal(0, 1)"]),
     ("velocity-scale", &["excess 1 Normal(0, 0.1)"]),
     ("sensor-drift", &["drift value/s Normal(0, 0.125)"]),
-    ("ar1", &["phi 1 Uniform(0, 1)"]),
-    ("heavy-tails", &["tail 1 Uniform(0, 0.5)"]),
-    ("unequal-variance(time)", &["rise 1 Normal(0, 1)"]),
-    ("unequal-variance(speed)", &["rise 1 Normal(0, 1)"]),
     (
         // ln 5: half the upper-quartile speed.
         "velocity-weakening",
@@ -371,62 +367,6 @@ fn a_release_is_shifted_down_the_track() {
     }
 }
 
-/// What is recorded once a second on an incline of 30 degrees, beside a t.
-const ERRORS: [f64; 6] = [0.9, -0.4, 1.3, 0.2, -1.1, 0.5];
-
-/// ln p of that recording with white noise of variance 0.7 and one mechanism
-/// of the errors.
-fn log_likelihood(label: &str, amount: f64) -> f64 {
-    let times: Vec<f64> = (1..=6).map(f64::from).collect();
-    let seen = times.iter().zip(ERRORS).map(|(t, e)| speed(*t) + e).collect();
-    let track = Track::incline(30.0, 900.0).unwrap();
-    let event = Event::on(track)
-        .velocity(Series::velocity(times, seen).unwrap())
-        .build()
-        .unwrap();
-    let model = model_of(event, label);
-    let posterior = Posterior::new(&model).unwrap();
-    let point = Point::Natural(&[amount, MU, 0.7]);
-    posterior.density(point).unwrap().log_likelihood
-}
-
-/// The speed after t seconds on 30 degrees.
-fn speed(t: f64) -> f64 {
-    let theta = 30.0_f64.to_radians();
-    G * (theta.sin() - MU * theta.cos()) * t
-}
-
-fn log_normal(x: f64, variance: f64) -> f64 {
-    -0.5 * ((std::f64::consts::TAU * variance).ln() + x * x / variance)
-}
-
-fn is_near(label: &str, amount: f64, expected: f64) {
-    let found = log_likelihood(label, amount);
-    assert!((found - expected).abs() < 1e-9, "{label}: {found} {expected}");
-}
-
-#[test]
-fn every_change_of_the_errors_is_what_its_formula_says() {
-    let first = log_normal(ERRORS[0], 0.7 / (1.0 - 0.36));
-    let rest = ERRORS.windows(2).map(|e| log_normal(e[1] - 0.6 * e[0], 0.7));
-    is_near("ar1", 0.6, first + rest.sum::<f64>());
-    // Student's with 4 degrees of freedom: Gamma(5/2)/Gamma(2) = 3/4 sqrt(pi),
-    // over sqrt(4 pi) is 3/8.
-    let student = |e: f64| {
-        (0.375 / 0.7_f64.sqrt()).ln() - 2.5 * (1.0 + e * e / 2.8).ln()
-    };
-    is_near("heavy-tails", 0.25, ERRORS.map(student).iter().sum());
-    let uneven =
-        |x: f64, e: f64| log_normal(e, 0.7 * (2.0 * 1.4 * (x - 0.5)).exp());
-    let times = (1..=6).map(f64::from);
-    let along = times.clone().zip(ERRORS).map(|(t, e)| uneven(t / 6.0, e));
-    is_near("unequal-variance(time)", 1.4, along.sum());
-    // Of six speeds the fifth has three quarters of them below it.
-    let quartile = speed(5.0) + ERRORS[4];
-    let along = times.zip(ERRORS).map(|(t, e)| uneven(speed(t) / quartile, e));
-    is_near("unequal-variance(speed)", 1.4, along.sum());
-}
-
 /// Nothing in the catalogue goes without a test of what it does.
 #[test]
 fn every_effect_is_tested() {
@@ -438,10 +378,6 @@ fn every_effect_is_tested() {
         "sensor-drift",
         "averaging-window(from the release)",
         "averaging-window(whole)",
-        "ar1",
-        "heavy-tails",
-        "unequal-variance(time)",
-        "unequal-variance(speed)",
     ];
     let tested: BTreeSet<&str> =
         FORCES.iter().map(|row| row.0).chain(elsewhere).collect();

@@ -129,14 +129,12 @@ fn a_planted_effect_is_found_by_a_mechanism_of_ones_own() {
     assert_eq!(amount.name, "gullies.delta_mu");
     // 0.2 was planted; three posterior sd hold it in all but 3 of 1000.
     assert!((amount.mean - 0.2).abs() < 3.0 * amount.sd, "{amount:?}");
-    // The model declares Voellmy's law, which has the drag, and Ar, which is
-    // the correlation; nobody said so again.
+    // The model declares Voellmy's law, which has the drag; nobody said so
+    // again.
     let names: Vec<&str> =
         found.mechanisms.iter().map(|m| m.name.as_str()).collect();
-    for held in ["turbulent-drag", "ar1"] {
-        assert!(!names.contains(&held), "{names:?}");
-    }
-    for there in ["cohesion", "friction-patch", "heavy-tails"] {
+    assert!(!names.contains(&"turbulent-drag"), "{names:?}");
+    for there in ["cohesion", "friction-patch"] {
         assert!(names.contains(&there), "{names:?}");
     }
     assert_eq!(found.baseline.friction, "voellmy");

@@ -248,7 +248,7 @@ fn what_events_have_in_common_is_integrated_as_all_at_once() {
     let cases = [
         ("friction-step", Sharing::Shared, true),
         ("friction-step", Sharing::Pooled, false),
-        ("heavy-tails", Sharing::Shared, true),
+        ("initial-velocity", Sharing::Shared, true),
         ("friction-patch", Sharing::Shared, true),
     ];
     for (name, sharing, one_law) in cases {

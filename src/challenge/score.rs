@@ -33,6 +33,9 @@ pub struct Answer {
     pub probabilities: Vec<(String, f64)>,
     /// The names that the recording cannot tell apart.
     pub group: Vec<String>,
+    /// The noises that may have made the errors, most probable first, each
+    /// with its probability.
+    pub noises: Vec<(String, f64)>,
     /// Where simulation and recording differ.
     pub mismatch: Vec<Interval>,
     /// Root mean square error of the baseline \[m/s\].
@@ -54,6 +57,26 @@ impl Answer {
         let top = self.probabilities.iter().max_by(most);
         top.map_or(("", 0.0), |(name, p)| (name.as_str(), *p))
     }
+
+    /// The noises that the recording cannot tell from the most probable.
+    fn near_noises(&self) -> impl Iterator<Item = &str> {
+        let best = self.noises.first().map_or(0.0, |(_, p)| *p);
+        let near = self.noises.iter().filter(move |(_, p)| *p >= 0.1 * best);
+        near.map(|(name, _)| name.as_str())
+    }
+}
+
+/// Whether a noise is what an effect on the errors makes of independent ones.
+fn is_made_by(noise: &str, effect: &str) -> bool {
+    let mut blocks = noise.split('+').map(str::trim);
+    let remembers =
+        |block: &str| !["white", "iid", "tails", "growth"].contains(&block);
+    match effect {
+        "ar1" => blocks.any(remembers),
+        "heavy-tails" => blocks.any(|b| b == "tails" || b == "student"),
+        "unequal-variance" => blocks.any(|b| b == "growth"),
+        _ => false,
+    }
 }
 
 /// A case with its answer.
@@ -68,19 +91,34 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Whether the truth is the most probable name.
+    /// Whether the truth is the most probable name; of the errors, whether the
+    /// most probable noise is like it.
     pub fn first(&self) -> bool {
-        self.answer.top().0 == self.truth.effect
+        match self.truth.class {
+            Class::Errors => {
+                let first = self.answer.noises.first();
+                first.is_some_and(|(n, _)| is_made_by(n, self.truth.effect))
+            }
+            _ => self.answer.top().0 == self.truth.effect,
+        }
     }
 
     /// Whether the truth has the most evidence, whatever the prior odds: the
     /// group begins with it.
     pub fn leads(&self) -> bool {
+        if self.truth.class == Class::Errors {
+            return self.first();
+        }
         self.answer.group.first().is_some_and(|n| n == self.truth.effect)
     }
 
-    /// Whether the truth is in the group.
+    /// Whether the truth is in the group, or like a noise that is nearly as
+    /// probable as the first.
     pub fn in_group(&self) -> bool {
+        if self.truth.class == Class::Errors {
+            let mut near = self.answer.near_noises();
+            return near.any(|noise| is_made_by(noise, self.truth.effect));
+        }
         self.answer.group.iter().any(|name| name == self.truth.effect)
     }
 
@@ -332,8 +370,10 @@ fn median(all: impl Iterator<Item = f64>) -> Option<f64> {
 /// effects of the catalogue.
 fn bins(outcomes: &[Outcome]) -> Vec<CalibrationBin> {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    // Probabilities of noises are another matter.
+    let apart = [Class::Outside, Class::Errors];
     let counted =
-        || outcomes.iter().filter(|o| o.truth.class != Class::Outside);
+        || outcomes.iter().filter(|o| !apart.contains(&o.truth.class));
     for o in counted() {
         *counts.entry(o.truth.effect).or_default() += 1;
     }

@@ -153,6 +153,11 @@ fn model_of(files: &[(&'static str, String)]) -> Result<Assembled> {
 fn answer_of(found: &Diagnosis) -> Answer {
     Answer {
         verdict: found.verdict.name().to_owned(),
+        noises: found
+            .noise
+            .iter()
+            .map(|n| (n.name.clone(), n.probability))
+            .collect(),
         probabilities: found
             .mechanisms
             .iter()

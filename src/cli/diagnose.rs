@@ -158,7 +158,8 @@ fn reports(found: &Diagnosis) -> Files {
 }
 
 /// The events again, with the mechanisms that were found, each in a folder of
-/// its own where there are several; none where nothing of the catalogue was.
+/// its own where there are several; none where nothing of the catalogue was
+/// and the errors are those named.
 fn corrected(
     subjects: &[Subject],
     labels: &[String],
@@ -167,14 +168,15 @@ fn corrected(
 ) -> Result<Files> {
     let had = found.baseline.mechanisms.len();
     let added = found.corrected.labels.get(had..).unwrap_or_default();
-    if added.is_empty() {
+    let other = found.corrected.noise.as_deref();
+    if added.is_empty() && other.is_none() {
         return Ok(Files::new());
     }
     let mut files = Files::new();
     for (i, event) in subjects.iter().enumerate() {
         let mut folder = PathBuf::from(CORRECTED);
         folder.extend(labels.get(i));
-        let event = event.corrected(laws, added)?.into_iter();
+        let event = event.corrected(laws, added, other)?.into_iter();
         files.extend(event.map(|(name, text)| (folder.join(name), text)));
     }
     Ok(files)

@@ -4,7 +4,7 @@ use super::Subject;
 use crate::error::{Error, Result};
 use crate::io::{self, EventFile};
 use crate::mechanism::catalogue::find;
-use crate::model::Assembled;
+use crate::model::{Assembled, Program};
 use crate::noise;
 use crate::physics::friction::Laws;
 
@@ -33,17 +33,23 @@ impl Subject {
     }
 
     /// The event's files with these mechanisms added to its model, as far as
-    /// they apply to it.
+    /// they apply to it, and another noise where there is one.
     pub(super) fn corrected(
         &self,
         laws: &Laws,
         added: &[String],
+        other: Option<&str>,
     ) -> Result<Vec<(&'static str, String)>> {
         let (friction, noise) = (self.friction.clone(), self.noise.clone());
         let file = self.load(laws)?;
         let priors = file.priors.clone();
-        let before =
+        let named =
             assemble(file, laws, friction.clone(), noise.clone(), None)?;
+        let before = match other {
+            Some(noise) => named.with_noise(noise)?,
+            None => None,
+        };
+        let before = before.unwrap_or(named);
         let (extent, blocks) = (before.event().extent(), before.blocks());
         let found = added
             .iter()
@@ -51,8 +57,9 @@ impl Subject {
             .collect();
         let model = before.with_mechanisms(found, &priors)?;
         let mechanisms = model.labels();
-        let unused = model.unused(&priors);
+        let unused = model.without_effect(&priors);
         let unused = unused.into_iter().map(str::to_owned).collect();
+        let noise = other.map(str::to_owned).or(noise);
         let correction =
             io::Correction { friction, noise, mechanisms, unused };
         io::corrected(self.event.as_deref(), &correction)

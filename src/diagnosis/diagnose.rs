@@ -21,8 +21,10 @@ use crate::diagnosis::findings::{
 use crate::diagnosis::hypothesis::{NONE, UNKNOWN};
 use crate::diagnosis::locate::{FreeForce, free_fit, own_draws};
 use crate::diagnosis::options::Options;
+use crate::diagnosis::tell::noise::is_other;
 use crate::diagnosis::tell::paste::corrected;
 use crate::diagnosis::tell::place::{mark, mismatch};
+use crate::diagnosis::tell::weak::is_weak;
 use crate::diagnosis::together::Sharing;
 use crate::draws::{Draws, summarise};
 use crate::error::{Error, Result};
@@ -174,7 +176,10 @@ impl<P: Program> Subject<'_, P> {
         let after = corrected_model(decision, free.as_ref(), row, all, seed);
         let compared =
             self.compared(table, row, after.as_ref(), options, seed)?;
-        let law = self.law(table, row, &compared, options)?;
+        let mut law = self.law(table, row, &compared, options)?;
+        if after.is_none() {
+            law.corrected.clear();
+        }
         let group = group(judged);
         let none = &row.noisy.none;
         let rivals = chosen.as_ref().map(|c| c.rivals(all, none));
@@ -192,6 +197,7 @@ impl<P: Program> Subject<'_, P> {
         let forces = &row.found()?.forces;
         self.write_out(&mut diagnosis, chosen.as_ref(), forces, options);
         diagnosis.forces = forces.clone();
+        diagnosis.weak = is_weak(&diagnosis);
         Ok(diagnosis)
     }
 
@@ -244,6 +250,8 @@ impl<P: Program> Subject<'_, P> {
         let (verdict, pictured) = (diagnosis.verdict, &diagnosis.pictured);
         let quantity = pictured.first().map_or("", |p| &p.quantity);
         diagnosis.corrected = corrected(&added, options, quantity);
+        diagnosis.corrected.noise =
+            is_other(diagnosis).then(|| diagnosis.selected_noise.clone());
         diagnosis.mismatch =
             mismatch(verdict, &reaches, forces, &self.events, pictured);
         mark(diagnosis, &self.events);
@@ -294,10 +302,7 @@ impl<P: Program> Subject<'_, P> {
         let open = own_draws(row.noisy.program(), &row.found()?.forces)?;
         Ok(LawParameters {
             as_it_was: of(&table.as_it_was()?.none.draws),
-            corrected: match added.is_empty() {
-                true => Vec::new(),
-                false => corrected.collect(),
-            },
+            corrected: corrected.collect(),
             with_free_form_force: of(&open),
         })
     }

@@ -17,6 +17,9 @@ pub struct Diagnosis {
     pub baseline: Baseline,
     /// What kind of thing is missing.
     pub verdict: Verdict,
+    /// Whether evidence and fit disagree, or the recording does not rule out
+    /// that nothing is missing.
+    pub weak: bool,
     /// Where simulation and recording differ.
     pub mismatch: Vec<Mismatch>,
     /// Everything that was weighed, most probable first.
@@ -307,6 +310,8 @@ pub struct Corrected {
     pub model: String,
     /// What to write under `mechanisms` in event.toml.
     pub labels: Vec<String>,
+    /// What to write as `noise` there, where it is another.
+    pub noise: Option<String>,
 }
 
 /// One recording with what both models predict of it.

@@ -104,11 +104,11 @@ fn mechanisms() -> Vec<Judged> {
             vec![parameter("ahead", "s", 0.82, 0.08)],
         ),
         judged(
-            "ar1",
-            Hypothesis::Mechanism(Family::Errors),
+            "velocity-scale",
+            Hypothesis::Mechanism(Family::Measurement),
             0.0004,
             17.9,
-            vec![parameter("phi", "1", 0.97, 0.01)],
+            vec![parameter("scale", "1", 0.07, 0.01)],
         ),
         judged("none", Hypothesis::Baseline, 1e-20, 0.0, vec![]),
     ];
@@ -125,7 +125,7 @@ fn improbable() -> impl Iterator<Item = Judged> {
         ("cohesion", Hypothesis::Mechanism(Family::Physics), -0.4),
         ("viscous-drag", Hypothesis::Mechanism(Family::Physics), -0.7),
         ("velocity-weakening", Hypothesis::Mechanism(Family::Physics), -0.8),
-        ("heavy-tails", Hypothesis::Mechanism(Family::Errors), -0.9),
+        ("sensor-drift", Hypothesis::Mechanism(Family::Measurement), -0.9),
     ];
     rest.into_iter().map(|(name, kind, bf)| {
         judged(name, kind, 1e-9, bf, vec![parameter("amount", "1", 0.1, 0.1)])
@@ -227,6 +227,7 @@ fn corrected() -> Corrected {
                 }\n}"
             .to_owned(),
         labels: vec!["friction-patch".to_owned()],
+        noise: None,
     }
 }
 
@@ -275,6 +276,7 @@ pub(super) fn diagnosis() -> Diagnosis {
             ..Baseline::default()
         },
         verdict: Verdict::MissingPhysics,
+        weak: false,
         mismatch: vec![mismatch()],
         mechanisms: mechanisms(),
         noise: noises(),
@@ -361,6 +363,18 @@ pub(super) fn of(verdict: Verdict, head: &str) -> Diagnosis {
     d
 }
 
+/// Nothing is missing, but the errors are not those named.
+fn other_errors() -> Diagnosis {
+    let mut d = adequate();
+    d.verdict = Verdict::Errors;
+    d.noise.reverse();
+    d.noise[0].log10_bayes_factor = 4.2;
+    d.selected_noise = d.noise[0].name.clone();
+    d.improvement = improvement();
+    d.corrected.noise = Some(d.selected_noise.clone());
+    d
+}
+
 /// One of each verdict, and a pair, several recordings and an AR(1) that
 /// swallowed the physics.
 pub(super) fn all() -> Vec<Diagnosis> {
@@ -387,7 +401,7 @@ pub(super) fn all() -> Vec<Diagnosis> {
         adequate(),
         of(Verdict::Measurement, "clock-offset"),
         of(Verdict::Measurement, "initial-velocity"),
-        of(Verdict::Errors, "ar1"),
+        other_errors(),
         of(Verdict::Unexplained, "unknown"),
         rich,
         Diagnosis::default(),

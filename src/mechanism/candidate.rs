@@ -22,8 +22,6 @@ pub enum Family {
     Start,
     /// How the motion is measured.
     Measurement,
-    /// How the values scatter.
-    Errors,
 }
 
 impl Family {
@@ -33,7 +31,6 @@ impl Family {
             Self::Physics => "physics",
             Self::Start => "start",
             Self::Measurement => "measurement",
-            Self::Errors => "noise",
         }
     }
 }
@@ -195,9 +192,9 @@ pub trait Candidate: Debug + Send + Sync {
     fn unknowns(&self) -> Vec<Unknown>;
 
     /// Whether each of several events has it in an amount of its own, as
-    /// starts and errors are.
+    /// starts are.
     fn is_each_events_own(&self) -> bool {
-        matches!(self.family(), Family::Start | Family::Errors)
+        self.family() == Family::Start
     }
 
     /// Which of the unknowns are an amplitude and its places, one range for

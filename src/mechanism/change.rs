@@ -1,12 +1,11 @@
 //! What a change from outside makes of a model: its motion, its start, its
-//! measurement, its noise.
+//! measurement.
 //!
 //! A [`Change`] is a plain struct of amounts that add up, and 0 everywhere
 //! changes nothing. It rides on every declared block, so that no law, no
 //! reading and no noise of a model escapes it.
 
 use super::Extent;
-use crate::noise::Alteration;
 use crate::physics::Forces;
 use crate::physics::forces::{STEPS, Term};
 use crate::scalar::{Kind, Real};
@@ -32,36 +31,12 @@ pub struct Change<K: Kind> {
     pub scale: Real<K>,
     /// What the sensor adds per second \[recorded unit/s\].
     pub drift: Real<K>,
-    /// What happens to the noise.
-    pub noise: Alteration<K>,
-    /// Along what a spread of the noise rises.
-    pub spread_along: Covariate,
     /// The share of a series' values that is known; those after them are
     /// not scored.
     pub known: Option<f64>,
     /// What is changed of each of several events besides; empty where all
     /// are changed alike.
     pub own: Vec<Self>,
-}
-
-/// Along what the spread of the noise may rise.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum Covariate {
-    /// The time over this one \[s\], less a half.
-    Time(f64),
-    /// The predicted value over this one, less a half.
-    Value(f64),
-}
-
-impl Covariate {
-    /// The covariate of a value predicted at a time.
-    pub fn of<K: Kind>(&self, time: f64, predicted: Real<K>) -> Real<K> {
-        match self {
-            Self::Time(scale) => Real::new(time / scale - 0.5),
-            Self::Value(scale) => predicted / *scale - 0.5,
-        }
-    }
 }
 
 impl<K: Kind> Default for Change<K> {
@@ -76,8 +51,6 @@ impl<K: Kind> Default for Change<K> {
             window_begins: true,
             scale: zero,
             drift: zero,
-            noise: Alteration::default(),
-            spread_along: Covariate::Time(1.0),
             known: None,
             own: Vec::new(),
         }
@@ -126,12 +99,6 @@ impl<K: Kind> Change<K> {
         both.window_begins &= other.window_begins;
         both.scale += other.scale;
         both.drift += other.drift;
-        both.noise.phi += other.noise.phi;
-        both.noise.tail += other.noise.tail;
-        both.noise.spread += other.noise.spread;
-        if !other.noise.spread.is_constantly_zero() {
-            both.spread_along = other.spread_along;
-        }
         let also = both.own.iter_mut().zip(&other.own);
         also.for_each(|(mine, theirs)| *mine = mine.and(theirs));
         let further = other.own.iter().skip(both.own.len()).cloned();

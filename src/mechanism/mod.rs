@@ -18,7 +18,7 @@ pub use candidate::{
     Candidate, ChangeKind, ChangeOf, Concern, Family, Mechanism, Missing,
     Noun, Reach, Role, Unknown,
 };
-pub use change::{Change, Covariate};
+pub use change::Change;
 pub use extent::Extent;
 pub(crate) use per_event::PerEvent;
 pub(crate) use pooled::Pooled;

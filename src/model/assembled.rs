@@ -123,6 +123,21 @@ impl Assembled {
         priors.keys().map(String::as_str).filter(|key| !known(key)).collect()
     }
 
+    /// The priors that this model does not go by: of parameters that it does
+    /// not have, or has with another prior.
+    pub fn without_effect<'p>(
+        &self,
+        priors: &'p BTreeMap<String, AnyPrior>,
+    ) -> Vec<&'p str> {
+        let differs = |key: &str, given: &AnyPrior| {
+            let mut known = self.priors();
+            known.any(|(name, prior)| name == key && prior != given)
+        };
+        let differing = priors.iter().filter(|(key, p)| differs(key, p));
+        let differing = differing.map(|(key, _)| key.as_str());
+        self.unused(priors).into_iter().chain(differing).collect()
+    }
+
     /// Refuses priors of parameters that the model does not have.
     ///
     /// # Errors

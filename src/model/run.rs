@@ -11,7 +11,7 @@ use crate::context::Context;
 use crate::declared::Declared;
 use crate::error::{Error, Outcome, Stop};
 use crate::mechanism::Change;
-use crate::noise::{Altered, Noise, Wide};
+use crate::noise::{Noise, Wide};
 use crate::observe::{Prediction, Series};
 use crate::prior::{Prior, Support};
 use crate::scalar::{Kind, Real};
@@ -312,7 +312,7 @@ impl<'r, K: Kind> Run<'r, K> {
         self.score_wide(series, &residuals, noise)
     }
 
-    /// The same under a change of what is read off and of the errors.
+    /// The same under a change of what is read off.
     fn observe_under<N: Noise<K>>(
         &mut self,
         change: &Change<K>,
@@ -321,13 +321,10 @@ impl<'r, K: Kind> Run<'r, K> {
         noise: &N,
     ) -> Outcome {
         let mut residuals = self.context.buffer();
-        let mut covariate = self.context.buffer();
         let mut recorded = series.times().iter().zip(series.values());
         prediction.predict(series, |predicted| {
             let (&time, &value) = recorded.next().unwrap_or((&0.0, &f64::NAN));
-            let shown = change.read(time, predicted);
-            residuals.push(value - shown);
-            covariate.push(change.spread_along.of(time, shown));
+            residuals.push(value - change.read(time, predicted));
         })?;
         let known = change.known.map(|share| series.first(series.part(share)));
         let series = match &known {
@@ -335,16 +332,7 @@ impl<'r, K: Kind> Run<'r, K> {
             Some(Err(error)) => return Err(Stop::Fail(error.clone())),
             None => series,
         };
-        let residuals = &residuals[..series.len()];
-        if change.noise.is_none() {
-            return self.score_wide(series, residuals, noise);
-        }
-        let altered = Altered {
-            base: noise,
-            change: change.noise,
-            covariate: &covariate,
-        };
-        self.score_wide(series, residuals, &altered)
+        self.score_wide(series, &residuals[..series.len()], noise)
     }
 
     /// Scores residuals with errors as wide as the noise says they are where

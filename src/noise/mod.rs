@@ -9,7 +9,6 @@
 //! [`White`]), what tails it has ([`Tails`]) and how its size changes
 //! ([`Growth`]) add up to a noise, in a [`Sum`](crate::block::Sum).
 
-mod altered;
 mod ar;
 mod catalogue;
 mod entry;
@@ -31,7 +30,6 @@ mod tests;
 mod white;
 mod wide;
 
-pub use altered::{Alteration, Altered};
 pub use ar::Ar;
 pub(crate) use catalogue::is_noise;
 pub use catalogue::{names, parse};

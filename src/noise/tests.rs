@@ -6,7 +6,6 @@ use statrs::distribution::{
     Continuous, ContinuousCDF, Normal as StatrsNormal, StudentsT,
 };
 
-mod changed;
 mod double;
 mod sums;
 

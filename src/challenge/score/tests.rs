@@ -33,10 +33,12 @@ pub(in crate::challenge) fn outcome(
 ) -> Outcome {
     let verdict = if answer == NONE { ADEQUATE } else { "missing-physics" };
     let others = (String::from("surge-like"), 1.0 - p);
+    let noise = if answer == "ar1" { "ou + tails" } else { "iid" };
     Outcome {
         case: "case-001".to_owned(),
         truth: truth(effect),
         answer: Answer {
+            noises: vec![(noise.to_owned(), 1.0)],
             verdict: verdict.to_owned(),
             probabilities: vec![(answer.to_owned(), p), others],
             group: vec![answer.to_owned()],

@@ -83,7 +83,7 @@ impl<P: Program> Choice<'_, P> {
     ///
     /// Where two or three mechanisms together were chosen, a single one is out
     /// of the question, and what they say goes: physics where one of them is
-    /// of the physics, though the best single mechanism may be another noise.
+    /// of the physics, though the best single mechanism may be of the sensor.
     /// Where the free-form force is more probable than any single mechanism,
     /// it must bring more than several together by what any further term has
     /// to bring.
@@ -107,8 +107,7 @@ impl<P: Program> Choice<'_, P> {
         let terms = chosen.mechanisms(self.all).into_iter();
         let verdict = match terms.map(|m| m.family()).min() {
             Some(Family::Physics) => Verdict::MissingPhysics,
-            Some(Family::Errors) | None => Verdict::Errors,
-            Some(_) => Verdict::Measurement,
+            _ => Verdict::Measurement,
         };
         (verdict, Some(chosen))
     }

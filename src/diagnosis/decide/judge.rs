@@ -159,7 +159,8 @@ fn none(rows: &[Seen<'_>]) -> Judged {
 
 /// The fit with the most evidence.
 fn most<'f>(fits: &[&'f Fit]) -> Option<&'f Fit> {
-    let more = |a: &&&Fit, b: &&&Fit| a.log_evidence.total_cmp(&b.log_evidence);
+    let more =
+        |a: &&&Fit, b: &&&Fit| a.log_evidence.total_cmp(&b.log_evidence);
     fits.iter().max_by(more).copied()
 }
 
@@ -308,7 +309,6 @@ fn verdict_of(kind: Hypothesis) -> Verdict {
         Hypothesis::Mechanism(family) => match family {
             Family::Physics => Verdict::MissingPhysics,
             Family::Start | Family::Measurement => Verdict::Measurement,
-            Family::Errors => Verdict::Errors,
         },
     }
 }
@@ -319,7 +319,6 @@ pub(crate) fn verdict(all: &[Judged]) -> Verdict {
         Verdict::Adequate,
         Verdict::MissingPhysics,
         Verdict::Measurement,
-        Verdict::Errors,
         Verdict::Unexplained,
     ];
     let mass = |verdict: &Verdict| -> f64 {
@@ -364,10 +363,6 @@ pub(crate) fn separating(
     } else if along(Axis::Time) && along(Axis::Place) {
         "A recording from another start would tell them apart: what belongs \
          to a place stays there, what belongs to a moment moves along."
-            .into()
-    } else if has(Verdict::Errors) {
-        "A longer recording, or a second sensor on the same mass, would tell \
-         them apart."
             .into()
     } else {
         "A recording at other speeds over the same ground, from a higher \

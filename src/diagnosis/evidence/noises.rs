@@ -166,9 +166,8 @@ impl<'a, P: Program> Survey<'a, '_, P> {
         forms: Vec<Form>,
         known: &[Weighed<'a, P>],
     ) -> Result<Vec<Weighed<'a, P>>> {
-        let is_new = |form: &Form| {
-            !known.iter().any(|one| one.form().is_like(form))
-        };
+        let is_new =
+            |form: &Form| !known.iter().any(|one| one.form().is_like(form));
         let mut new = Vec::new();
         for form in forms.into_iter().filter(is_new) {
             let name = form.to_string();
@@ -198,11 +197,7 @@ impl<'a, P: Program> Survey<'a, '_, P> {
         Ok(Weighed { name: name.to_owned(), program, none, open })
     }
 
-    fn weighed(
-        &self,
-        name: &str,
-        program: &P,
-    ) -> Result<(Looked, Outlook)> {
+    fn weighed(&self, name: &str, program: &P) -> Result<(Looked, Outlook)> {
         let seed = self.seed.called(name);
         let backend = LaplaceMixture::default();
         let none = prospect(program, &[], backend, seed.child(0))?;

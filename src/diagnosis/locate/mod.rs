@@ -184,9 +184,8 @@ pub(crate) fn outlook<P: Program>(
     let higher =
         |a: &&Look, b: &&Look| a.log_evidence.total_cmp(&b.log_evidence);
     let best = looks.iter().max_by(higher);
-    let own = best.map_or_else(Vec::new, |look| {
-        look.tangent.own.as_slice().to_vec()
-    });
+    let own = best
+        .map_or_else(Vec::new, |look| look.tangent.own.as_slice().to_vec());
     let mixture = proposal(&looks)?;
     let marginal = Marginal { sought, looks, shared: program.events() > 1 };
     let learned = learn(&marginal, mixture, GLANCE, seed.child(0))?;

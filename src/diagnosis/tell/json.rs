@@ -127,8 +127,8 @@ fn improvement_json(i: &Improvement) -> Value {
         "coverage90_after": i.coverage90.after,
         "ljung_box_p_before": i.ljung_box_p.before,
         "ljung_box_p_after": i.ljung_box_p.after,
-        "least_squares_before": i.least_squares.before,
-        "least_squares_after": i.least_squares.after,
+        "rmse_least_squares_before": i.least_squares.before,
+        "rmse_least_squares_after": i.least_squares.after,
         "stationary_sd_before": i.stationary_sd.before,
         "stationary_sd_after": i.stationary_sd.after,
     })
@@ -139,6 +139,7 @@ fn corrected_json(corrected: &Corrected) -> Value {
         "equation": corrected.equation,
         "model": corrected.model,
         "mechanisms": corrected.labels,
+        "noise": corrected.noise,
     })
 }
 
@@ -155,6 +156,7 @@ impl Diagnosis {
             "event": self.event,
             "baseline": baseline_json(&self.baseline),
             "verdict": self.verdict.name(),
+            "weak": self.weak,
             "mismatch": list(&self.mismatch, mismatch_json),
             "mechanisms": list(&self.mechanisms, judged_json),
             "noise": list(&self.noise, noise_json),

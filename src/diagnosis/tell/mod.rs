@@ -2,6 +2,7 @@
 
 mod json;
 mod law;
+pub(crate) mod noise;
 #[cfg(feature = "pages")]
 pub(crate) mod page;
 pub(crate) mod paste;
@@ -10,4 +11,5 @@ pub(crate) mod pictures;
 pub(crate) mod place;
 mod signs;
 pub(crate) mod summary;
+pub(crate) mod weak;
 pub(crate) mod words;

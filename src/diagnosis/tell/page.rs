@@ -2,11 +2,14 @@
 
 use maud::{Markup, PreEscaped, html};
 
-use crate::diagnosis::tell::phrases::{friction, interval, is_corrected};
+use crate::diagnosis::tell::phrases::{
+    friction, interval, is_corrected, log10, probability, with_unit,
+};
 use crate::diagnosis::tell::pictures::{Figure, bars, forces, of_event};
 use crate::diagnosis::tell::words::{before_and_after, in_words};
 use crate::diagnosis::{
-    Diagnosis, Hypothesis, LawParameters, ParameterSummary, Pictured, Verdict,
+    Diagnosis, Hypothesis, JudgedNoise, LawParameters, ParameterSummary,
+    Pictured, Verdict,
 };
 use crate::report::digits::{beside, significant};
 use crate::report::standalone;
@@ -33,6 +36,7 @@ pub fn page(d: &Diagnosis) -> String {
             (section(force_title(d.verdict), forces(d)))
             (section("What may be missing", bars(d)))
             (sentences(d))
+            (noises(d))
             (corrected(d))
             (compared(d))
             (parameters(d))
@@ -153,9 +157,50 @@ fn sentences(d: &Diagnosis) -> Markup {
     }
 }
 
+/// The noises that may have made the errors.
+fn noises(d: &Diagnosis) -> Markup {
+    if d.noise.is_empty() {
+        return html! {};
+    }
+    html! {
+        h2 { "What made the errors" }
+        div.wide { table {
+            thead { tr {
+                @for heading in
+                    ["noise", "probability", "log10 Bayes factor", "parameters"]
+                {
+                    th scope="col" { (heading) }
+                }
+            } }
+            tbody { @for n in &d.noise {
+                tr {
+                    td.name { (plain(&n.name)) }
+                    td { (probability(n.probability)) }
+                    td { (log10(n.log10_bayes_factor).replace('-', "−")) }
+                    td { (sizes(n).replace('-', "−")) }
+                }
+            } }
+        } }
+        p.note {
+            "Each averaged over what may be missing; the Bayes factor is \
+             against the noise that the event names."
+        }
+    }
+}
+
+/// A noise's parameters with their 90 % intervals.
+fn sizes(noise: &JudgedNoise) -> String {
+    let one = |p: &ParameterSummary| {
+        let middle = with_unit(&beside(p.q50, p.sd), &p.unit);
+        format!("{} {middle} ({})", plain(&p.name), interval(p))
+    };
+    noise.parameters.iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
 fn corrected(d: &Diagnosis) -> Markup {
     let c = &d.corrected;
-    if c.equation.is_empty() && c.model.is_empty() && c.labels.is_empty() {
+    let written = !c.labels.is_empty() || c.noise.is_some();
+    if c.equation.is_empty() && c.model.is_empty() && !written {
         return html! {};
     }
     let fixed = is_corrected(d);
@@ -168,7 +213,7 @@ fn corrected(d: &Diagnosis) -> Markup {
             h3 { "In Rust" }
             pre { code { (lines(&c.model)) } }
         }
-        @if !c.labels.is_empty() {
+        @if written {
             h3 { "In event.toml" }
             pre { code { (lines(&event_lines(d))) } }
         }
@@ -188,7 +233,13 @@ fn event_lines(d: &Diagnosis) -> String {
         .iter()
         .map(|label| serde_json::json!(label).to_string())
         .collect();
-    format!("[model]\nmechanisms = [{}]", quoted.join(", "))
+    let noise = d
+        .corrected
+        .noise
+        .as_ref()
+        .map(|noise| format!("noise = {}\n", serde_json::json!(noise)));
+    let noise = noise.unwrap_or_default();
+    format!("[model]\n{noise}mechanisms = [{}]", quoted.join(", "))
 }
 
 fn compared(d: &Diagnosis) -> Markup {

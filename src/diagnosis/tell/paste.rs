@@ -29,7 +29,7 @@ pub(crate) fn corrected(
         .filter(|_| is_found)
         .map_or_else(String::new, |own| model_text(&all, own, quantity));
     let labels = all.iter().map(|m| m.label()).collect();
-    Corrected { equation, model, labels }
+    Corrected { equation, model, labels, noise: None }
 }
 
 /// A program with the model and the mechanisms added to it.

@@ -1,15 +1,16 @@
 //! Mechanisms, places and figures in words.
 
 use crate::diagnosis::{
-    Baseline, Diagnosis, Judged, Mismatch, ParameterSummary,
+    Baseline, Diagnosis, Judged, Mismatch, ParameterSummary, Verdict,
 };
 use crate::physics::forces::Axis;
 use crate::report::digits::{beside, short, significant};
 use crate::report::text::{is_synthetic, plain, unit};
 
-/// Whether there is a corrected model to compare with.
+/// Whether there is a corrected model to compare with: something was added to
+/// it, or its errors are taken for others.
 pub(crate) fn is_corrected(d: &Diagnosis) -> bool {
-    !d.selected.is_empty()
+    !d.selected.is_empty() || d.verdict == Verdict::Errors
 }
 
 /// A mechanism as a snow scientist would call it.

@@ -12,8 +12,8 @@ const NEAR: f64 = 25.0;
 
 /// The stretches in which simulation and recording differ: where a selected
 /// mechanism is confined, its edges; else the hull of the runs in which the
-/// free-form force's band leaves zero out, those nearby joined. Empty only if
-/// nothing is missing.
+/// free-form force's band leaves zero out, those nearby joined. Empty where no
+/// force is missing.
 pub(crate) fn mismatch(
     verdict: Verdict,
     reaches: &[Reach],
@@ -21,7 +21,8 @@ pub(crate) fn mismatch(
     events: &[&Event],
     pictured: &[Pictured],
 ) -> Vec<Mismatch> {
-    if verdict == Verdict::Adequate {
+    // Of what is of the start, the measurement or the errors no force is told.
+    if !matches!(verdict, Verdict::MissingPhysics | Verdict::Unexplained) {
         return Vec::new();
     }
     let along = |axis: Axis| forces.iter().find(|f| f.axis == axis);

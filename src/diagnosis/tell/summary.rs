@@ -31,6 +31,7 @@ pub fn summary(d: &Diagnosis, width: usize) -> String {
         lines.extend(wrap(&plain(&sentence), width));
     }
     lines.extend(mechanisms(d, width));
+    lines.extend(noises(d, width));
     lines.extend(compared(d));
     lines.extend(equation(d, width));
     lines.iter().fold(String::new(), |out, line| {
@@ -65,6 +66,24 @@ fn mechanisms(d: &Diagnosis, width: usize) -> Vec<String> {
         let name = format!("{} more", rest.len());
         lines.push(line(&name, &probability(p), "", ""));
     }
+    lines
+}
+
+/// The noises that may have made the errors.
+fn noises(d: &Diagnosis, width: usize) -> Vec<String> {
+    if d.noise.len() < 2 {
+        return Vec::new();
+    }
+    let name = width.saturating_sub(20).min(40);
+    let line = |noise: &str, p: &str, bf: &str| {
+        format!("{:<name$}  {p:>7}  {bf:>8}", shorten(noise, name))
+    };
+    let head = line("noise", "prob.", "log10 BF");
+    let mut lines = vec![String::new(), head, "─".repeat(name + 19)];
+    lines.extend(d.noise.iter().map(|n| {
+        let bf = log10(n.log10_bayes_factor);
+        line(&plain(&n.name), &probability(n.probability), &bf)
+    }));
     lines
 }
 

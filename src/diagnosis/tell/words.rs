@@ -1,12 +1,14 @@
 //! A diagnosis in sentences that a snow scientist can check.
 
 use crate::diagnosis::tell::law::law;
+use crate::diagnosis::tell::noise::noise;
 use crate::diagnosis::tell::phrases::{
     all_called, amounts, called, capital, event, friction, interval,
     is_corrected, judged, log10, model, own_name, probability, range, stretch,
     with_unit,
 };
 use crate::diagnosis::tell::signs::either_sign;
+use crate::diagnosis::tell::weak::disagreement;
 use crate::diagnosis::{
     Baseline, BeforeAfter, Diagnosis, Hypothesis, Judged, Mismatch,
     ParameterSummary, Rival, Verdict,
@@ -43,12 +45,16 @@ pub fn in_words(d: &Diagnosis) -> Vec<String> {
         said.extend(law(d));
     } else {
         said.extend(d.mismatch.iter().take(TOLD).map(|m| difference(d, m)));
-        said.push(explanation(d));
+        if d.verdict != Verdict::Errors {
+            said.push(explanation(d));
+        }
+        said.extend(noise(d));
         said.extend(sizes(d));
         said.extend(either_sign(d));
         if is_corrected(d) {
             said.push(better(d));
             said.extend(ahead(d));
+            said.extend(disagreement(d));
         } else {
             said.push(uncorrected(d));
             said.push(residuals(&d.baseline));
@@ -105,19 +111,11 @@ fn of_start(d: &Diagnosis) -> bool {
 
 /// Where simulation and recording differ, as a force.
 fn difference(d: &Diagnosis, m: &Mismatch) -> String {
-    let real =
-        matches!(d.verdict, Verdict::MissingPhysics | Verdict::Unexplained);
-    let (be, more) = if real { ("is", "") } else { ("seems to be", "only ") };
-    let end = match d.verdict {
-        Verdict::Errors => "; errors of another kind do that without a force",
-        _ => "",
-    };
     let size = m.specific_force.abs();
     let sense = if m.specific_force > 0.0 { "less" } else { "more" };
     let law = friction(&d.baseline);
     format!(
-        "{} the mass {more}{be} braked by {} m/s²{} {sense} than {law} \
-         gives{}{}{end}.",
+        "{} the mass is braked by {} m/s²{} {sense} than {law} gives{}{}.",
         capital(&stretch(m)),
         short(size, 2),
         force_interval(m),
@@ -320,7 +318,7 @@ fn better(d: &Diagnosis) -> String {
 }
 
 /// The unit of the recording.
-fn recorded_in(d: &Diagnosis) -> &str {
+pub(crate) fn recorded_in(d: &Diagnosis) -> &str {
     d.pictured.first().map_or("", |p| p.unit.as_str())
 }
 

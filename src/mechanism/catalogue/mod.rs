@@ -1,6 +1,5 @@
 //! The catalogue: what may be missing from a model, one mechanism a file.
 
-mod ar1;
 mod averaging_window;
 mod clock_offset;
 mod cohesion;
@@ -9,7 +8,6 @@ mod entrainment;
 mod friction_hardening;
 mod friction_patch;
 mod friction_step;
-mod heavy_tails;
 mod initial_velocity;
 mod list;
 mod release_position;
@@ -17,12 +15,10 @@ mod sensor_drift;
 mod slope_bias;
 mod surge;
 mod turbulent_drag;
-mod unequal_variance;
 mod velocity_scale;
 mod velocity_weakening;
 mod viscous_drag;
 
-pub use ar1::Ar1;
 pub use averaging_window::AveragingWindow;
 pub use clock_offset::ClockOffset;
 pub use cohesion::Cohesion;
@@ -31,7 +27,6 @@ pub use entrainment::Entrainment;
 pub use friction_hardening::FrictionHardening;
 pub use friction_patch::FrictionPatch;
 pub use friction_step::FrictionStep;
-pub use heavy_tails::HeavyTails;
 pub use initial_velocity::InitialVelocity;
 pub use list::{Catalogue, catalogue, find};
 pub(crate) use list::{is_built_in, is_held};
@@ -40,7 +35,6 @@ pub use sensor_drift::SensorDrift;
 pub use slope_bias::SlopeBias;
 pub use surge::Surge;
 pub use turbulent_drag::TurbulentDrag;
-pub use unequal_variance::UnequalVariance;
 pub use velocity_scale::VelocityScale;
 pub use velocity_weakening::VelocityWeakening;
 pub use viscous_drag::ViscousDrag;

@@ -89,18 +89,16 @@ fn style(kind: Hypothesis) -> (&'static str, &'static str) {
         Hypothesis::Mechanism(Family::Measurement) => {
             ("measurement", "#e69f00")
         }
-        Hypothesis::Mechanism(Family::Errors) => ("errors", "#cc79a7"),
         Hypothesis::Unknown => ("force of free form", "#56b4e9"),
         Hypothesis::Baseline => ("nothing missing", "#8c8c8c"),
     }
 }
 
 /// The kinds in the order of the legend.
-const KINDS: [Hypothesis; 6] = [
+const KINDS: [Hypothesis; 5] = [
     Hypothesis::Mechanism(Family::Physics),
     Hypothesis::Mechanism(Family::Start),
     Hypothesis::Mechanism(Family::Measurement),
-    Hypothesis::Mechanism(Family::Errors),
     Hypothesis::Unknown,
     Hypothesis::Baseline,
 ];

@@ -1,0 +1,75 @@
+//! Whether a verdict is weak: evidence and fit disagree, or the recording
+//! does not rule out that nothing is missing.
+
+use crate::diagnosis::hypothesis::NONE;
+use crate::diagnosis::tell::phrases::{is_corrected, joined, with_unit};
+use crate::diagnosis::tell::words::recorded_in;
+use crate::diagnosis::{BeforeAfter, Diagnosis};
+use crate::report::digits::significant;
+
+/// By what share an error must grow to be worse: below it a posterior mean of
+/// some hundred draws says nothing.
+const WORSE: f64 = 0.01;
+
+/// The errors that grow although the evidence does, with what they are called.
+fn worse(d: &Diagnosis) -> Vec<(&'static str, BeforeAfter)> {
+    let i = &d.improvement;
+    let grows = |pair: &BeforeAfter| pair.after > (1.0 + WORSE) * pair.before;
+    let all = [
+        ("the root mean square error", i.rmse),
+        ("the least one of its motion", i.least_squares),
+        ("that of the last 30 %, predicted from the rest,", i.heldout_rmse),
+    ];
+    let gains = is_corrected(d) && i.log10_bayes_factor > 0.0;
+    let told = all.into_iter().filter(|(_, pair)| gains && grows(pair));
+    told.collect()
+}
+
+/// Whether the verdict is weak.
+pub(crate) fn is_weak(d: &Diagnosis) -> bool {
+    let open = is_corrected(d) && d.group.iter().any(|name| name == NONE);
+    open || !worse(d).is_empty()
+}
+
+/// Why the verdict is weak, where evidence and fit disagree.
+pub(crate) fn disagreement(d: &Diagnosis) -> Option<String> {
+    let worse = worse(d);
+    if worse.is_empty() {
+        return None;
+    }
+    let unit = recorded_in(d);
+    let told = |(what, pair): &(&str, BeforeAfter)| {
+        let before = significant(pair.before, 2);
+        let after = with_unit(&significant(pair.after, 2), unit);
+        format!("{what} grows from {before} to {after}")
+    };
+    let told: Vec<String> = worse.iter().map(told).collect();
+    Some(format!(
+        "The evidence rises but the fit does not: {}; this verdict is weak.",
+        joined(&told, "and")
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::fixture::diagnosis;
+
+    #[test]
+    fn a_fit_that_grows_worse_is_weak_and_told() {
+        let mut d = diagnosis();
+        assert!(!is_weak(&d) && disagreement(&d).is_none());
+        d.improvement.rmse = BeforeAfter { before: 0.9, after: 1.7 };
+        assert!(is_weak(&d));
+        let said = disagreement(&d).unwrap();
+        let told = "the root mean square error grows from 0.90 to 1.7 m/s;";
+        assert!(said.contains(told), "{said}");
+    }
+
+    #[test]
+    fn a_group_with_nothing_missing_is_weak() {
+        let mut d = diagnosis();
+        d.group.push(NONE.to_owned());
+        assert!(is_weak(&d));
+    }
+}
