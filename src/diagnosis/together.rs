@@ -5,7 +5,7 @@
 //! start, a clock or a noise is each event's own, and so are sensors that do
 //! not record the same quantity.
 
-use crate::mechanism::catalogue::{Catalogue, is_held};
+use crate::mechanism::catalogue::{Catalogue, applies};
 use crate::mechanism::{Family, Mechanism, PerEvent, Pooled};
 use crate::model::{Member, Together};
 use crate::observe::Event;
@@ -35,9 +35,9 @@ impl<M: Member> Together<M> {
             .collect()
     }
 
-    /// Whether any event's model has the mechanism already.
-    fn has(&self, mechanism: &dyn Mechanism) -> bool {
-        self.blocks().iter().any(|blocks| is_held(mechanism, blocks))
+    /// Whether it can be missing from every event's model.
+    fn applies(&self, mechanism: &dyn Mechanism) -> bool {
+        self.blocks().iter().all(|blocks| applies(mechanism, blocks))
     }
 
     /// A mechanism of the catalogue as it is for several events; `None` where
@@ -52,7 +52,7 @@ impl<M: Member> Together<M> {
             _ if self.is_each_ones(mechanism.as_ref()) => {
                 self.each(known, mechanism.as_ref())
             }
-            _ if self.has(mechanism.as_ref()) => None,
+            _ if !self.applies(mechanism.as_ref()) => None,
             Sharing::Shared => Some(mechanism),
             Sharing::Pooled => {
                 Some(Box::new(Pooled::new(mechanism, self.labels())))

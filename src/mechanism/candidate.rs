@@ -223,6 +223,12 @@ pub trait Candidate: Debug + Send + Sync {
         &[]
     }
 
+    /// The laws of which the model must have one, where it changes what only
+    /// these have; empty where any will do.
+    fn needs(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     /// The term it adds to du/dt, or the change it makes, as a formula.
     fn formula(&self) -> String;
 }

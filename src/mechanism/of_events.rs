@@ -44,6 +44,9 @@ macro_rules! says_as {
         fn contained_in(&self) -> &'static [&'static str] {
             self.$inner().contained_in()
         }
+        fn needs(&self) -> &'static [&'static str] {
+            self.$inner().needs()
+        }
         fn formula(&self) -> String {
             self.$inner().formula()
         }

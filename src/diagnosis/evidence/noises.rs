@@ -261,24 +261,45 @@ fn pays<P: Program>(one: &Weighed<'_, P>, all: &[Weighed<'_, P>]) -> bool {
     logs[0] > best(0) || logs[1] > best(1)
 }
 
-/// The best of those that are near the best, the named one among them where
-/// it is near; each is fitted.
+/// The best of those that are near the best, the named one and the best in
+/// either way among them; each is fitted.
 fn kept<P: Program>(
     mut all: Vec<Weighed<'_, P>>,
     seed: Seed,
 ) -> Result<Noises<'_, P>> {
+    let near: Vec<String> = all
+        .iter()
+        .filter(|one| short(one, &all) < NEAR * LN_10)
+        .map(|one| one.name.clone())
+        .collect();
+    let mut first: Vec<String> =
+        [0, 1].iter().filter_map(|way| best(*way, &all)).collect();
     all.sort_by(|a, b| b.worth().total_cmp(&a.worth()));
-    let is_near = |one| short(one, &all) < NEAR * LN_10;
-    let near: Vec<bool> = all.iter().map(is_near).collect();
+    let others = all.iter().map(|one| &one.name);
+    first.extend(others.filter(|name| near.contains(name)).cloned());
+    let mut most = Vec::new();
+    for name in first {
+        if most.len() < MOST && !most.contains(&name) {
+            most.push(name);
+        }
+    }
     let (mut kept, mut dropped) = (Vec::new(), None);
-    for (one, near) in all.into_iter().zip(near) {
+    for one in all {
         let seed = seed.called(&one.name).child(4);
-        let is_named = one.is_named();
-        if near && (kept.len() < MOST || is_named) {
+        let (is_near, is_named) = (near.contains(&one.name), one.is_named());
+        if most.contains(&one.name) || (is_near && is_named) {
             kept.push(one.fitted(seed)?);
         } else if is_named {
             dropped = Some(one.fitted(seed)?);
         }
     }
     Ok(Noises { kept, dropped })
+}
+
+/// The name of the noise with the most evidence in one way.
+fn best<P: Program>(way: usize, all: &[Weighed<'_, P>]) -> Option<String> {
+    let more = |a: &&Weighed<'_, P>, b: &&Weighed<'_, P>| {
+        a.logs()[way].total_cmp(&b.logs()[way])
+    };
+    all.iter().max_by(more).map(|one| one.name.clone())
 }

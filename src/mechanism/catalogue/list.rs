@@ -52,7 +52,7 @@ impl Catalogue {
     ) -> Vec<Box<dyn Mechanism>> {
         let mut all = built_in(extent);
         all.extend(self.further.iter().map(|make| make(extent)));
-        all.retain(|m| !is_held(m.as_ref(), blocks));
+        all.retain(|m| applies(m.as_ref(), blocks));
         all
     }
 
@@ -110,7 +110,10 @@ impl Catalogue {
         let why = match known {
             None => "is no mechanism",
             Some(m) if is_held(m.as_ref(), blocks) => {
-                "is a term that the model's laws or noise already have"
+                "is a term that the model's laws already have"
+            }
+            Some(m) if !applies(m.as_ref(), blocks) => {
+                "changes what none of the model's laws has"
             }
             Some(_) => "has nothing to act on in this event",
         };
@@ -149,6 +152,15 @@ fn without_spaces(text: &str) -> String {
 /// Whether a mechanism that comes along has this name.
 pub(crate) fn is_built_in(name: &str) -> bool {
     built_in(&Extent::EVERYTHING).iter().any(|m| m.name() == name)
+}
+
+/// Whether a mechanism can be missing from a model with blocks of these names;
+/// of no names any can.
+pub(crate) fn applies(mechanism: &dyn Candidate, blocks: &[String]) -> bool {
+    let needs = mechanism.needs();
+    let has = |own: &String| needs.contains(&own.as_str());
+    let can = needs.is_empty() || blocks.is_empty() || blocks.iter().any(has);
+    can && !is_held(mechanism, blocks)
 }
 
 /// Whether a model with blocks of these names has the mechanism already, in

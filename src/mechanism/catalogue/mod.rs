@@ -4,6 +4,7 @@ mod averaging_window;
 mod clock_offset;
 mod cohesion;
 mod curvature;
+mod depth_change;
 mod entrainment;
 mod friction_hardening;
 mod friction_patch;
@@ -13,6 +14,7 @@ mod list;
 mod release_position;
 mod sensor_drift;
 mod slope_bias;
+mod spreading;
 mod surge;
 mod turbulent_drag;
 mod velocity_scale;
@@ -23,16 +25,18 @@ pub use averaging_window::AveragingWindow;
 pub use clock_offset::ClockOffset;
 pub use cohesion::Cohesion;
 pub use curvature::Curvature;
+pub use depth_change::DepthChange;
 pub use entrainment::Entrainment;
 pub use friction_hardening::FrictionHardening;
 pub use friction_patch::FrictionPatch;
 pub use friction_step::FrictionStep;
 pub use initial_velocity::InitialVelocity;
 pub use list::{Catalogue, catalogue, find};
-pub(crate) use list::{is_built_in, is_held};
+pub(crate) use list::{applies, is_built_in, is_held};
 pub use release_position::ReleasePosition;
 pub use sensor_drift::SensorDrift;
 pub use slope_bias::SlopeBias;
+pub use spreading::Spreading;
 pub use surge::Surge;
 pub use turbulent_drag::TurbulentDrag;
 pub use velocity_scale::VelocityScale;
@@ -69,6 +73,8 @@ fn built_in(extent: &Extent) -> Vec<Box<dyn Mechanism>> {
         Box::new(Cohesion { extent }),
         Box::new(Surge { extent }),
         Box::new(Entrainment { extent }),
+        Box::new(Spreading { extent }),
+        Box::new(DepthChange { extent }),
         Box::new(InitialVelocity { extent }),
         Box::new(ReleasePosition { extent }),
         Box::new(ClockOffset),
