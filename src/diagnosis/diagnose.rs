@@ -246,14 +246,14 @@ impl<P: Program> Subject<'_, P> {
     ) {
         let all = &self.all[..];
         let added = chosen.map(|c| c.mechanisms(all)).unwrap_or_default();
-        let reaches = chosen.map(|c| c.reaches(all)).unwrap_or_default();
+        let terms = chosen.map(|c| c.added(all)).unwrap_or_default();
         let (verdict, pictured) = (diagnosis.verdict, &diagnosis.pictured);
         let quantity = pictured.first().map_or("", |p| &p.quantity);
         diagnosis.corrected = corrected(&added, options, quantity);
         diagnosis.corrected.noise =
             is_other(diagnosis).then(|| diagnosis.selected_noise.clone());
         diagnosis.mismatch =
-            mismatch(verdict, &reaches, forces, &self.events, pictured);
+            mismatch(verdict, &terms, forces, &self.events, pictured);
         mark(diagnosis, &self.events);
     }
 

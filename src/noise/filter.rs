@@ -272,7 +272,7 @@ impl<K: Kind> Whole<'_, K> {
         Ok(())
     }
 
-    /// A draw of unit variance with the tails there are.
+    /// A draw of unit scale with the tails there are.
     fn deviate(&self, rng: &mut Rng) -> Result<f64, Stop> {
         let Some(nu) = self.tails() else {
             return Ok(StandardNormal.sample(rng));
@@ -280,7 +280,7 @@ impl<K: Kind> Whole<'_, K> {
         let nu = nu.value();
         let law = StudentT::new(nu)
             .map_err(|_| Stop::Reject("nu is not above 2"))?;
-        Ok(law.sample(rng) * ((nu - 2.0) / nu).sqrt())
+        Ok(law.sample(rng))
     }
 }
 
@@ -303,9 +303,9 @@ impl<K: Kind> Noise<K> for Whole<'_, K> {
                 visit(next.sized(law.at(next.error)));
             });
         };
-        let (peak, narrower) = (log_peak(nu), (nu - 2.0) / nu);
+        let peak = log_peak(nu);
         self.each(at, seen, |next| {
-            let law = Law::new(nu, peak, next.variance * narrower);
+            let law = Law::new(nu, peak, next.variance);
             visit(next.sized(law.at(next.error)));
         })
     }
@@ -318,14 +318,14 @@ impl<K: Kind> Noise<K> for Whole<'_, K> {
         one_per_time(at, residuals)?;
         let mut total = Real::new(0.0);
         let (mut squares, mut logs) = (total, LogSum::new());
-        // One plus each square over nu - 2, where there are tails.
+        // One plus each square over nu, where there are tails.
         let mut tails = LogSum::new();
-        let narrower = self.tails().map(|nu| 1.0 / (nu - 2.0));
+        let over = self.tails().map(|nu| 1.0 / nu);
         self.each(at, Residuals::Seen(residuals), |next| {
             let square = next.error * next.error * next.precision;
-            match narrower {
+            match over {
                 None => squares += square,
-                Some(narrower) => tails.add(square * narrower + 1.0),
+                Some(over) => tails.add(square * over + 1.0),
             }
             logs.add(next.variance);
             if let Some(log_size) = next.log_size {
@@ -337,8 +337,7 @@ impl<K: Kind> Noise<K> for Whole<'_, K> {
         Ok(match self.tails() {
             None => total - 0.5 * squares - LN_SQRT_2PI * n,
             Some(nu) => {
-                let peak = log_peak(nu) - 0.5 * ((nu - 2.0) / nu).ln();
-                total - 0.5 * (nu + 1.0) * tails.total() + peak * n
+                total - 0.5 * (nu + 1.0) * tails.total() + log_peak(nu) * n
             }
         })
     }

@@ -5,12 +5,15 @@ use crate::block::{Block, Field};
 use crate::scalar::{Kind, Real};
 
 /// What of an error is not told by those before it is t distributed with nu
-/// degrees of freedom, of the same variance as without:
+/// degrees of freedom:
 ///
-///   r_i ~ t_nu(m_i, v_i (nu - 2)/nu),
+///   r_i ~ t_nu(m_i, v_i),
 ///
-/// m_i and v_i the mean and the variance given all before (Lange, Little and
-/// Taylor 1989, for each value in turn).
+/// m_i the mean and v_i the variance given all before, which is here the
+/// squared scale (Lange, Little and Taylor 1989, for each value in turn). The
+/// other blocks' variances are then those of the core: of errors without their
+/// outliers, which nu hardly changes. A variance of all, nu/(nu - 2) times as
+/// large, would be as uncertain as nu is.
 ///
 /// ```
 /// use couloir::block::Sum;
@@ -18,7 +21,7 @@ use crate::scalar::{Kind, Real};
 /// use couloir::scalar::{Plain, Real};
 /// let x = Real::<Plain>::new;
 /// let noise = Sum::new(White { sigma2: x(3.0) }, Tails { nu: x(6.0) });
-/// let same = Student { dof: x(6.0), scale: x(2f64.sqrt()) };
+/// let same = Student { dof: x(6.0), scale: x(3f64.sqrt()) };
 /// let (at, r) = (Grid::new(vec![0.0], None), [x(2.0)]);
 /// let [a, b] = [noise.log_likelihood(&at, &r), same.log_likelihood(&at, &r)];
 /// assert!((a.unwrap().value() - b.unwrap().value()).abs() < 1e-12);

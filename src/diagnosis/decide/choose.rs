@@ -6,6 +6,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::diagnosis::compare::checks::rows_of;
+use crate::diagnosis::decide::added::Added;
 use crate::diagnosis::decide::judge::Beforehand;
 use crate::diagnosis::evidence::attribute::{
     Attribution, Known, extend, pair,
@@ -15,7 +16,7 @@ use crate::diagnosis::findings::{Judged, Rival, Verdict};
 use crate::diagnosis::hypothesis::{Hypothesis, UNKNOWN};
 use crate::draws::median;
 use crate::error::Result;
-use crate::mechanism::{Family, Mechanism, Reach};
+use crate::mechanism::{Family, Mechanism};
 use crate::model::Program;
 use crate::seed::Seed;
 
@@ -349,30 +350,15 @@ impl Chosen {
             .collect()
     }
 
-    /// Where the mechanisms are confined to, by the medians of their edges.
-    ///
-    /// Of two modes of opposite sign (more friction here, or less everywhere
-    /// else) the more probable one counts: medians over both are nowhere.
-    pub(crate) fn reaches(&self, all: &[Box<dyn Mechanism>]) -> Vec<Reach> {
+    /// The mechanisms with their draws.
+    pub(crate) fn added<'a>(
+        &self,
+        all: &'a [Box<dyn Mechanism>],
+    ) -> Vec<Added<'a>> {
         let rows = rows_of(&self.fit.draws);
-        let mut reaches = Vec::new();
-        for (mechanism, own) in self.columns(all) {
-            let up = rows.iter().filter(|row| row[own.start] > 0.0).count();
-            let sign = if 2 * up >= rows.len() { 1.0 } else { -1.0 };
-            let edges: Vec<Reach> = rows
-                .iter()
-                .filter(|row| row[own.start] * sign >= 0.0)
-                .filter_map(|row| mechanism.reach(&row[own.clone()]))
-                .collect();
-            let middle = |of: fn(&Reach) -> f64| {
-                median(&edges.iter().map(of).collect::<Vec<_>>())
-            };
-            reaches.extend(edges.first().map(|one| Reach {
-                axis: one.axis,
-                from: middle(|r| r.from),
-                to: middle(|r| r.to),
-            }));
-        }
-        reaches
+        let is_mu = |name: &String| name == "mu" || name.ends_with(".mu");
+        let mu = self.fit.draws.names().iter().position(is_mu);
+        let columns = self.columns(all).into_iter();
+        columns.map(|(m, own)| Added::new(m, &rows, own, mu)).collect()
     }
 }

@@ -1,57 +1,41 @@
 //! Where the mismatch is, as it is told: stretches with force and sign.
 
 use crate::diagnosis::compare::checks::recordings;
+use crate::diagnosis::decide::added::{Added, Passing};
 use crate::diagnosis::findings::{Diagnosis, Mismatch, Pictured, Verdict};
 use crate::diagnosis::locate::{FreeForce, Stretch};
 use crate::mechanism::Reach;
 use crate::observe::Event;
+use crate::physics::Site;
 use crate::physics::forces::Axis;
 
 /// Runs of the free-form force nearer than this are one \[m\].
 const NEAR: f64 = 25.0;
 
-/// The stretches in which simulation and recording differ: where a selected
-/// mechanism is confined, its edges; else the hull of the runs in which the
-/// free-form force's band leaves zero out, those nearby joined. Empty where no
-/// force is missing.
+/// The stretches in which simulation and recording differ, as a force: that of
+/// each selected term where it is confined to, or where its 90 % band leaves
+/// zero out; of what no mechanism describes that of the free-form force, where
+/// its band does. Empty where no force is missing.
 pub(crate) fn mismatch(
     verdict: Verdict,
-    reaches: &[Reach],
+    added: &[Added<'_>],
     forces: &[FreeForce],
     events: &[&Event],
     pictured: &[Pictured],
 ) -> Vec<Mismatch> {
-    // Of what is of the start, the measurement or the errors no force is told.
-    if !matches!(verdict, Verdict::MissingPhysics | Verdict::Unexplained) {
-        return Vec::new();
-    }
-    let along = |axis: Axis| forces.iter().find(|f| f.axis == axis);
     let courses = Courses::new(events, pictured);
-    if !reaches.is_empty() {
-        return reaches
-            .iter()
-            .filter_map(|reach| {
-                let force = along(reach.axis)?;
-                let end = courses.end(reach.axis);
-                let stretch = Stretch {
-                    from: reach.from,
-                    to: reach.to.min(end).max(reach.from),
-                };
-                courses.mismatch(force, stretch, &[])
-            })
-            .collect();
-    }
-    let Some(force) = along(Axis::Place) else { return Vec::new() };
-    let mut runs = force.runs();
-    if runs.is_empty() {
-        runs.push(force.strongest());
-    }
-    joined(&runs)
-        .into_iter()
-        .filter_map(|(stretch, parts)| {
-            courses.mismatch(force, stretch, &parts)
-        })
-        .collect()
+    let told = match verdict {
+        Verdict::MissingPhysics => {
+            let terms = added.iter().filter(|term| term.is_force());
+            terms.flat_map(|term| courses.of_term(term)).collect()
+        }
+        Verdict::Unexplained => courses.of_force(forces),
+        _ => Vec::new(),
+    };
+    // Of what may have either sign none is told.
+    let has_sign =
+        |m: &Mismatch| m.specific_force_q05 * m.specific_force_q95 > 0.0;
+    told.into_iter().filter(has_sign).collect()
 }
 
 /// Runs nearer than [`NEAR`] as one, with what they are made of.
@@ -75,7 +59,14 @@ struct Courses<'a>(Vec<Course<'a>>);
 impl<'a> Courses<'a> {
     fn new(events: &[&'a Event], pictured: &[Pictured]) -> Self {
         let owners = recordings(events).into_iter().zip(pictured);
-        Self(owners.map(|((event, _), p)| Course::new(event, p)).collect())
+        let number = |event: &Event| {
+            let mut all = events.iter();
+            all.position(|one| std::ptr::eq(*one, event)).unwrap_or(0)
+        };
+        let course = |((event, _), p): ((&'a Event, _), _)| {
+            Course::new(number(event), event, p)
+        };
+        Self(owners.map(course).collect())
     }
 
     /// Where or when the last of them ends.
@@ -84,36 +75,85 @@ impl<'a> Courses<'a> {
         ends.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// What is told of a stretch: times, and the load of the ground, by the
-    /// course that covers most of it, the first of equals.
-    fn mismatch(
+    /// The free-form force over distance where its band leaves zero out, runs
+    /// nearby joined.
+    fn of_force(&self, forces: &[FreeForce]) -> Vec<Mismatch> {
+        let over_distance = forces.iter().find(|f| f.axis == Axis::Place);
+        let Some(force) = over_distance else { return Vec::new() };
+        let mut runs = force.runs();
+        if runs.is_empty() {
+            runs.push(force.strongest());
+        }
+        let tell = |(stretch, parts): (Stretch, Vec<Stretch>)| {
+            let (_, course) = self.covering(force.axis, stretch)?;
+            let part =
+                |p: &Stretch| (p.from, p.to, mean(&force.over(*p)));
+            Some(Mismatch {
+                parts: parts.iter().map(part).collect(),
+                ..course.mismatch(force.axis, stretch, force.over(stretch))
+            })
+        };
+        joined(&runs).into_iter().filter_map(tell).collect()
+    }
+
+    /// The force of a term: where it is confined to, or wherever its sign is
+    /// known.
+    fn of_term(&self, term: &Added<'_>) -> Vec<Mismatch> {
+        if let Some(Reach { axis, from, to }) = term.reach() {
+            let to = to.min(self.end(axis)).max(from);
+            let stretch = Stretch { from, to };
+            let covering = self.covering(axis, stretch);
+            let tell = |(event, course): (usize, &Course)| {
+                let forces = term.forces(event, &course.within(axis, stretch));
+                course.mismatch(axis, stretch, means(&forces))
+            };
+            return covering.map(tell).into_iter().collect();
+        }
+        let everywhere =
+            Stretch { from: f64::NEG_INFINITY, to: f64::INFINITY };
+        let Some((event, course)) = self.covering(Axis::Place, everywhere)
+        else {
+            return Vec::new();
+        };
+        let forces = term.forces(event, &course.way);
+        let sides = [1.0, -1.0].into_iter();
+        let told = sides.filter_map(|side| course.side(&forces, side));
+        told.collect()
+    }
+
+    /// The course that covers most of a stretch, the first of equals, with
+    /// the number of its event.
+    fn covering(
         &self,
-        force: &FreeForce,
+        axis: Axis,
         stretch: Stretch,
-        parts: &[Stretch],
-    ) -> Option<Mismatch> {
+    ) -> Option<(usize, &Course<'a>)> {
         let covered = |course: &Course| {
-            let [first, last] = course.ends(force.axis);
+            let [first, last] = course.ends(axis);
             stretch.to.min(last) - stretch.from.max(first)
         };
-        let most = |best, other| match covered(other) > covered(best) {
-            true => other,
-            false => best,
+        let most = |best: &'_ Course<'a>, other: &'_ Course<'a>| {
+            covered(other) > covered(best)
         };
-        let course = self.0.iter().reduce(most)?;
-        Some(course.mismatch(force, stretch, parts))
+        let all = self.0.iter();
+        let course = all.reduce(|a, b| if most(a, b) { b } else { a })?;
+        Some((course.number, course))
     }
 }
 
 /// When one mass is where.
 struct Course<'a> {
+    /// Which of the events.
+    number: usize,
     event: &'a Event,
     times: Vec<f64>,
     places: Vec<f64>,
+    /// The same with speeds and the ground.
+    way: Vec<Passing>,
 }
 
 impl<'a> Course<'a> {
-    fn new(event: &'a Event, pictured: &Pictured) -> Self {
+    fn new(number: usize, event: &'a Event, pictured: &Pictured) -> Self {
         let start = event.track().origin() + event.start();
         let mut times = vec![0.0];
         let mut places = vec![start];
@@ -123,7 +163,8 @@ impl<'a> Course<'a> {
                 places.push(s.max(places[places.len() - 1]));
             }
         }
-        Self { event, times, places }
+        let way = way(event, &times, &places);
+        Self { number, event, times, places, way }
     }
 
     /// Where or when it begins and ends.
@@ -140,45 +181,82 @@ impl<'a> Course<'a> {
         between(&self.times, &self.places, time)
     }
 
+    /// The points of the way within a stretch, or the nearest one.
+    fn within(&self, axis: Axis, stretch: Stretch) -> Vec<Passing> {
+        let at = |p: &Passing| match axis {
+            Axis::Time => p.time,
+            _ => p.place,
+        };
+        let inside = |p: &&Passing| {
+            (stretch.from..stretch.to).contains(&at(p))
+        };
+        let all: Vec<Passing> =
+            self.way.iter().filter(inside).copied().collect();
+        if !all.is_empty() {
+            return all;
+        }
+        let middle = 0.5 * (stretch.from + stretch.to);
+        let off = |p: &&Passing| (at(p) - middle).abs();
+        let nearest =
+            self.way.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+        // Moved there: between two values the term acts nowhere else.
+        nearest.map(|p| self.moved(*p, axis, middle)).into_iter().collect()
+    }
+
+    fn moved(&self, at: Passing, axis: Axis, to: f64) -> Passing {
+        match axis {
+            Axis::Time => Passing { time: to, place: self.place_at(to), ..at },
+            _ => Passing { place: to, time: self.time_at(to), ..at },
+        }
+    }
+
+    /// The hull of the points at which draws of a force have one sign, 90 % of
+    /// them in all.
+    fn side(&self, forces: &[Vec<f64>], sign: f64) -> Option<Mismatch> {
+        let known = |i: &usize| {
+            let at: Vec<f64> = forces.iter().map(|f| f[*i] * sign).collect();
+            quantile(at, 0.05) > 0.0
+        };
+        let all: Vec<usize> = (0..self.way.len()).filter(known).collect();
+        let (first, last) = (*all.first()?, *all.last()?);
+        let (from, to) = (self.way[first].place, self.way[last].place);
+        let over = |draw: &Vec<f64>| {
+            all.iter().map(|i| draw[*i]).sum::<f64>() / all.len() as f64
+        };
+        let drawn = forces.iter().map(over).collect();
+        let stretch = Stretch { from, to };
+        Some(self.mismatch(Axis::Place, stretch, drawn))
+    }
+
+    /// What is told of a stretch with draws of the mean force there.
     fn mismatch(
         &self,
-        force: &FreeForce,
+        axis: Axis,
         stretch: Stretch,
-        parts: &[Stretch],
+        drawn: Vec<f64>,
     ) -> Mismatch {
-        let (times, places) = match force.axis {
-            Axis::Time => {
-                let place =
-                    [stretch.from, stretch.to].map(|t| self.place_at(t));
-                ([stretch.from, stretch.to], place)
-            }
-            _ => {
-                let time = [stretch.from, stretch.to].map(|s| self.time_at(s));
-                (time, [stretch.from, stretch.to])
-            }
+        let ends = [stretch.from, stretch.to];
+        let (times, places) = match axis {
+            Axis::Time => (ends, ends.map(|t| self.place_at(t))),
+            _ => (ends.map(|s| self.time_at(s)), ends),
         };
-        let mut drawn = force.over(stretch);
-        drawn.sort_by(f64::total_cmp);
-        let at = |p: f64| drawn[(p * (drawn.len() - 1) as f64) as usize];
-        let force_there = mean(&drawn);
-        let same = drawn.iter().filter(|f| **f * force_there > 0.0).count();
+        let force = mean(&drawn);
+        let same = drawn.iter().filter(|f| **f * force > 0.0).count();
         let load = self.load(0.5 * (places[0] + places[1]));
-        let part =
-            |part: &Stretch| (part.from, part.to, mean(&force.over(*part)));
         Mismatch {
-            axis: force.axis,
+            axis,
             from: stretch.from,
             to: stretch.to,
             time_from: times[0],
             time_to: times[1],
             place_from: places[0],
             place_to: places[1],
-            specific_force: force_there,
-            specific_force_q05: at(0.05),
-            specific_force_q95: at(0.95),
-            delta_mu: if load > 0.0 { -force_there / load } else { f64::NAN },
+            specific_force: force,
+            specific_force_q05: quantile(drawn.clone(), 0.05),
+            specific_force_q95: quantile(drawn.clone(), 0.95),
+            delta_mu: if load > 0.0 { -force / load } else { f64::NAN },
             probability: same as f64 / drawn.len() as f64,
-            parts: parts.iter().map(part).collect(),
+            parts: Vec::new(),
         }
     }
 
@@ -188,6 +266,41 @@ impl<'a> Course<'a> {
         let piece = track.piece_at((place - track.origin()).max(0.0));
         track.pieces()[piece].load
     }
+}
+
+/// The points of a way at some times, with the speeds between them.
+fn way(event: &Event, times: &[f64], places: &[f64]) -> Vec<Passing> {
+    let track = event.track();
+    let last = times.len() - 1;
+    let point = |i: usize| {
+        let (before, after) = (i.saturating_sub(1), (i + 1).min(last));
+        let lapse = (times[after] - times[before]).max(f64::MIN_POSITIVE);
+        let on = (places[i] - track.origin()).max(0.0);
+        let piece = &track.pieces()[track.piece_at(on)];
+        Passing {
+            place: places[i],
+            time: times[i],
+            speed: (places[after] - places[before]) / lapse,
+            site: Site {
+                distance: places[i],
+                pull: piece.pull,
+                load: piece.load,
+                curvature: piece.curvature,
+                depth: event.depth(),
+            },
+        }
+    };
+    (0..times.len()).map(point).collect()
+}
+
+/// The mean of each draw.
+fn means(draws: &[Vec<f64>]) -> Vec<f64> {
+    draws.iter().map(|draw| mean(draw)).collect()
+}
+
+fn quantile(mut values: Vec<f64>, p: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[(p * (values.len() - 1) as f64) as usize]
 }
 
 fn mean(values: &[f64]) -> f64 {
@@ -232,10 +345,9 @@ pub(crate) fn mark(diagnosis: &mut Diagnosis, events: &[&Event]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::CELLS;
-    use crate::diagnosis::locate::Process;
+    use crate::mechanism::catalogue::find;
     use crate::observe::Series;
-    use crate::physics::Track;
+    use crate::physics::{GRAVITY, Track};
 
     /// A mass that goes at 10 m/s for 10 s from its track's first point.
     fn event(origin: f64) -> (Event, Pictured) {
@@ -248,47 +360,47 @@ mod tests {
         (event.build().unwrap(), pictured)
     }
 
-    /// A brake of 1 m/s2 in every cell over 300 m.
-    fn force() -> FreeForce {
-        let step = 300.0 / CELLS as f64;
-        FreeForce {
-            axis: Axis::Place,
-            at: (0..CELLS).map(|i| (i as f64 + 0.5) * step).collect(),
-            mean: vec![-1.0; CELLS],
-            sd: vec![0.1; CELLS],
-            width: 2.0,
-            draws: vec![vec![-1.0; CELLS]; 2],
-            log_bayes_factor: 0.0,
-            se: 0.0,
-            own: vec![],
-            spread: vec![],
-            process: Process(0.0, 0.0),
-        }
+    /// What is told of a mechanism with one draw of its values.
+    fn told(label: &str, values: &[f64]) -> Vec<Mismatch> {
+        let (upper, of_upper) = event(0.0);
+        let (lower, of_lower) = event(150.0);
+        let found = find(label, &upper.extent(), &[]).unwrap();
+        let n = values.len();
+        let term = Added::new(found.as_ref(), &[values], 0..n, None);
+        let verdict = Verdict::MissingPhysics;
+        let pictured = [of_upper, of_lower];
+        mismatch(verdict, &[term], &[], &[&upper, &lower], &pictured)
     }
 
     #[test]
     fn a_stretch_is_told_by_the_event_that_passes_it() {
-        let (upper, of_upper) = event(0.0);
-        let (lower, of_lower) = event(150.0);
-        let pictured = [of_upper, of_lower];
-        let told = |from: f64, to: f64| {
-            let reach = Reach { axis: Axis::Place, from, to };
-            let verdict = Verdict::MissingPhysics;
-            let events = [&upper, &lower];
-            mismatch(verdict, &[reach], &[force()], &events, &pictured)
-                .remove(0)
-        };
+        let load = GRAVITY * 20.0_f64.to_radians().cos();
         // Each mass is at `origin + 10 t`.
         for (from, to, begins, ends) in
             [(20.0, 60.0, 2.0, 6.0), (180.0, 220.0, 3.0, 7.0)]
         {
-            let m = told(from, to);
+            let m = told("friction-patch", &[0.1, from, to - from]).remove(0);
             assert_eq!((m.from, m.to), (from, to));
             assert!((m.time_from - begins).abs() < 1e-9, "{}", m.time_from);
             assert!((m.time_to - ends).abs() < 1e-9, "{}", m.time_to);
+            assert!((m.specific_force + 0.1 * load).abs() < 1e-9);
+            assert!((m.delta_mu - 0.1).abs() < 1e-9);
         }
         // A step of the friction goes on to where the last mass does.
-        assert_eq!(told(180.0, f64::INFINITY).to, 250.0);
+        assert_eq!(told("friction-step", &[0.1, 180.0]).remove(0).to, 250.0);
+        // Shorter than the way between two values it is told all the same.
+        let m = told("friction-patch", &[-0.2, 41.0, 2.0]).remove(0);
+        assert!((m.specific_force - 0.2 * load).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_force_without_edges_is_told_by_its_signs() {
+        let all = told("turbulent-drag", &[0.003]);
+        assert_eq!(all.len(), 1);
+        // Of the first of equals, at 10 m/s all the way.
+        assert_eq!((all[0].from, all[0].to), (0.0, 100.0));
+        assert!((all[0].specific_force + 0.3).abs() < 1e-9);
+        assert_eq!(told("turbulent-drag", &[0.0]).len(), 0);
     }
 
     #[test]
@@ -308,10 +420,6 @@ mod tests {
     }
 
     fn mismatched() -> Mismatch {
-        let (event, pictured) = event(0.0);
-        let reach = Reach { axis: Axis::Place, from: 0.0, to: 1.0 };
-        let verdict = Verdict::MissingPhysics;
-        mismatch(verdict, &[reach], &[force()], &[&event], &[pictured])
-            .remove(0)
+        told("friction-patch", &[0.1, 20.0, 40.0]).remove(0)
     }
 }

@@ -187,7 +187,7 @@ fn tails_and_growth_shape_what_is_not_remembered() {
             let mut expected = 0.0;
             for i in 0..at.len() {
                 let (mean, variance) = given_before(&c, &even, i);
-                let width = (variance * (nu - 2.0) / nu).sqrt();
+                let width = variance.sqrt();
                 let law = StudentsT::new(mean, width, nu).unwrap();
                 expected += law.ln_pdf(even[i]) - size(i).ln();
             }
