@@ -32,6 +32,15 @@ struct Filter<'w, 'a, K: Kind, const N: usize> {
     lapse: Option<Lapse>,
     matrix: Matrix<K, N>,
     noise: Matrix<K, N>,
+    /// What was expected of the last value, and of all where that no longer
+    /// changes, with the variance of their own errors.
+    last: Option<Predicted<K, N>>,
+    steady: Option<(Predicted<K, N>, Real<K>)>,
+    /// Whether the last value was expected so.
+    is_steady: bool,
+    /// Whether it is seen when nothing changes: a tape has its derivatives
+    /// later.
+    settles: bool,
 }
 
 impl<'w, 'a, K: Kind, const N: usize> Filter<'w, 'a, K, N> {
@@ -49,7 +58,20 @@ impl<'w, 'a, K: Kind, const N: usize> Filter<'w, 'a, K, N> {
         }
         let (matrix, noise) = ([[zero; N]; N], [[zero; N]; N]);
         let (mean, lapse) = ([zero; N], None);
-        Self { whole, values, mean, covariance, lapse, matrix, noise }
+        let settles = K::DIRECTIONS > 0 || !K::DIFFERENTIATES;
+        Self {
+            whole,
+            values,
+            mean,
+            covariance,
+            lapse,
+            matrix,
+            noise,
+            last: None,
+            steady: None,
+            is_steady: false,
+            settles,
+        }
     }
 
     /// Lets the time before a value pass: x moves to F x, its covariance P to
@@ -100,16 +122,52 @@ impl<'w, 'a, K: Kind, const N: usize> Filter<'w, 'a, K, N> {
         Predicted { mean, variance, across }
     }
 
-    /// Takes a value in that differs so much from the prediction, and has such
-    /// a covariance with the state.
+    /// Lets the time before a value pass that has errors of such a variance of
+    /// its own, and says what is expected of it.
+    ///
+    /// At even times what is known of the state soon neither grows nor falls
+    /// from value to value (the filter is steady, Harvey 1989, section 3.3);
+    /// then only its mean goes on.
+    #[inline]
+    fn next(&mut self, lapse: Lapse, own: Real<K>) -> Predicted<K, N> {
+        if let Some((steady, of)) = self.steady
+            && of.value() == own.value()
+            && self.lapse == Some(lapse)
+        {
+            self.is_steady = true;
+            self.mean = times(&self.matrix, &self.mean);
+            let mean = self.values.iter().map(|&v| self.mean[v]).sum();
+            return Predicted { mean, ..steady };
+        }
+        self.is_steady = false;
+        let again = self.lapse == Some(lapse);
+        self.advance(lapse);
+        let predicted = self.predict(own);
+        self.steady = None;
+        let same = |last: &Predicted<K, N>| predicted.is_as_sure_as(last);
+        if again && self.settles && self.last.is_some_and(|last| same(&last)) {
+            self.steady = Some((predicted, own));
+        }
+        self.last = Some(predicted);
+        predicted
+    }
+
+    /// Takes a value in that differs so much from the prediction.
     #[expect(clippy::needless_range_loop, reason = "two entries at once")]
     #[inline]
     fn learn(
         &mut self,
-        across: &[Real<K>; N],
+        predicted: &Predicted<K, N>,
         error: Real<K>,
         precision: Real<K>,
     ) {
+        let across = &predicted.across;
+        if self.is_steady {
+            for i in 0..N {
+                self.mean[i] += across[i] * precision * error;
+            }
+            return;
+        }
         for i in 0..N {
             let gain = across[i] * precision;
             self.mean[i] += gain * error;
@@ -123,11 +181,28 @@ impl<'w, 'a, K: Kind, const N: usize> Filter<'w, 'a, K, N> {
 }
 
 /// What a filter expects of a value.
+#[derive(Clone, Copy)]
 struct Predicted<K: Kind, const N: usize> {
     mean: Real<K>,
     variance: Real<K>,
     /// The covariance of the state with it.
     across: [Real<K>; N],
+}
+
+/// A share of a variance that is round-off.
+const ROUND_OFF: f64 = 1e-14;
+
+impl<K: Kind, const N: usize> Predicted<K, N> {
+    /// Whether the state is known as well as it was before another value.
+    #[inline]
+    fn is_as_sure_as(&self, last: &Self) -> bool {
+        self.variance.is_near(last.variance, ROUND_OFF)
+            && self
+                .across
+                .iter()
+                .zip(&last.across)
+                .all(|(a, b)| a.is_near(*b, ROUND_OFF))
+    }
 }
 
 /// F x.
@@ -248,8 +323,7 @@ impl<K: Kind> Whole<'_, K> {
                 Some(over) => white + over * over * known,
                 None => white + known,
             };
-            filter.advance(Lapse::before(at, i));
-            let predicted = filter.predict(own);
+            let predicted = filter.next(Lapse::before(at, i), own);
             let variance = predicted.variance;
             if variance <= 0.0 || variance.value().is_nan() {
                 return Err(Stop::Reject("a value has no error of its own"));
@@ -267,7 +341,7 @@ impl<K: Kind> Whole<'_, K> {
             };
             let precision = 1.0 / variance;
             visit(&Innovation { error, variance, precision, log_size });
-            filter.learn(&predicted.across, error, precision);
+            filter.learn(&predicted, error, precision);
         }
         Ok(())
     }

@@ -221,6 +221,17 @@ impl<K: Kind> Real<K> {
     pub fn is_constant(self) -> bool {
         K::is_constant(&self.0)
     }
+
+    /// Whether another number is this one but for such a share of it, in all
+    /// derivatives that both carry with them too.
+    #[inline]
+    pub(crate) fn is_near(self, other: Self, share: f64) -> bool {
+        let size = self.value().abs();
+        let off = |i| K::partial(&self.0, i) - K::partial(&other.0, i);
+        let slope = |i| size + K::partial(&self.0, i).abs();
+        (self.value() - other.value()).abs() <= share * size
+            && (0..K::DIRECTIONS).all(|i| off(i).abs() <= share * slope(i))
+    }
 }
 
 impl<K: Forward> Real<K> {

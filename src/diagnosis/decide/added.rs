@@ -135,8 +135,7 @@ mod tests {
             let found = find(label, &extent, &[]).unwrap();
             let n = values.len();
             let row = [values, &[0.3]].concat();
-            let added =
-                Added::new(found.as_ref(), &[&row[..]], 0..n, Some(n));
+            let added = Added::new(found.as_ref(), &[&row[..]], 0..n, Some(n));
             added.forces(0, &[at])[0][0]
         };
         let near = |found: f64, expected: f64| {
@@ -157,8 +156,7 @@ mod tests {
         let seen = Series::velocity(vec![1.0, 9.0], vec![2.0, 20.0]);
         let event = Event::on(track).velocity(seen.unwrap()).build().unwrap();
         let found = find("curvature", &event.extent(), &[]).unwrap();
-        let added =
-            Added::new(found.as_ref(), &[&[0.9, 0.3]], 0..1, Some(1));
+        let added = Added::new(found.as_ref(), &[&[0.9, 0.3]], 0..1, Some(1));
         let site = Site {
             distance: 0.0,
             pull: 5.0,

@@ -86,8 +86,7 @@ impl<'a> Courses<'a> {
         }
         let tell = |(stretch, parts): (Stretch, Vec<Stretch>)| {
             let (_, course) = self.covering(force.axis, stretch)?;
-            let part =
-                |p: &Stretch| (p.from, p.to, mean(&force.over(*p)));
+            let part = |p: &Stretch| (p.from, p.to, mean(&force.over(*p)));
             Some(Mismatch {
                 parts: parts.iter().map(part).collect(),
                 ..course.mismatch(force.axis, stretch, force.over(stretch))
@@ -187,9 +186,8 @@ impl<'a> Course<'a> {
             Axis::Time => p.time,
             _ => p.place,
         };
-        let inside = |p: &&Passing| {
-            (stretch.from..stretch.to).contains(&at(p))
-        };
+        let inside =
+            |p: &&Passing| (stretch.from..stretch.to).contains(&at(p));
         let all: Vec<Passing> =
             self.way.iter().filter(inside).copied().collect();
         if !all.is_empty() {
@@ -197,8 +195,7 @@ impl<'a> Course<'a> {
         }
         let middle = 0.5 * (stretch.from + stretch.to);
         let off = |p: &&Passing| (at(p) - middle).abs();
-        let nearest =
-            self.way.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+        let nearest = self.way.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
         // Moved there: between two values the term acts nowhere else.
         nearest.map(|p| self.moved(*p, axis, middle)).into_iter().collect()
     }

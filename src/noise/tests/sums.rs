@@ -115,6 +115,46 @@ fn every_sum_of_three_is_the_dense_normal_density() {
     }
 }
 
+/// 150 even times, and the same with two gaps: what is known of the state no
+/// longer changes before the first of them.
+fn long_grids() -> [Grid; 2] {
+    let all = (0..150).map(|i| 0.25 * f64::from(i));
+    let gaps = |t: &f64| !(20.0..21.0).contains(t) && *t != 30.0;
+    [
+        Grid::new(all.clone().collect(), None),
+        Grid::new(all.filter(gaps).collect(), None),
+    ]
+}
+
+#[test]
+fn steady_filters_are_dense_densities() {
+    let mut rng = Seed::new(14).rng();
+    let all = summands();
+    let pairs =
+        (0..all.len()).flat_map(|i| (i..all.len()).map(move |j| [i, j]));
+    for pair in pairs {
+        let sum = pair.map(|i| &all[i]);
+        for at in long_grids() {
+            let noise = whole(&sum);
+            let r = noise.draw(&at, &mut rng).unwrap();
+            let expected = dense(sum_covariance(&sum, &at), &r);
+            let found = noise.log_likelihood(&at, &lifted(&r)).unwrap();
+            close(found.value(), expected, 1e-9);
+        }
+    }
+}
+
+#[test]
+fn steady_filters_have_their_derivatives() {
+    let r: Vec<f64> = (0..150).map(|i| (f64::from(i) * 1.3).sin()).collect();
+    for at in long_grids() {
+        let r = &r[..at.len()];
+        gradient_agrees("matern32 + white", &at, [0.9, 0.3, 0.7], r);
+        gradient_agrees("ou + white", &at, [1.3, 0.6, 0.7], r);
+        gradient_agrees("ou + tails", &at, [1.3, 0.6, 4.5], r);
+    }
+}
+
 #[test]
 fn draws_of_sums_have_the_covariance_of_the_sum() {
     const DRAWS: usize = 20_000;
