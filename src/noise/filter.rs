@@ -353,7 +353,7 @@ impl<K: Kind> Whole<'_, K> {
         };
         let nu = nu.value();
         let law = StudentT::new(nu)
-            .map_err(|_| Stop::Reject("nu is not above 2"))?;
+            .map_err(|_| Stop::Reject("nu is not positive"))?;
         Ok(law.sample(rng))
     }
 }

@@ -209,8 +209,8 @@ impl<'a, K: Kind> Whole<'a, K> {
         if !self.white.is_none_or(positive) {
             return Err(Stop::Reject("the variance sigma2 is not positive"));
         }
-        if !self.tails.is_none_or(|nu| nu > 2.0 && nu.value().is_finite()) {
-            return Err(Stop::Reject("nu is not above 2"));
+        if !self.tails.is_none_or(positive) {
+            return Err(Stop::Reject("nu is not positive"));
         }
         if !self.growth.is_none_or(|growth| growth.value().is_finite()) {
             return Err(Stop::Reject("growth is not a finite number"));

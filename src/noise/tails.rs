@@ -13,7 +13,8 @@ use crate::scalar::{Kind, Real};
 /// squared scale (Lange, Little and Taylor 1989, for each value in turn). The
 /// other blocks' variances are then those of the core: of errors without their
 /// outliers, which nu hardly changes. A variance of all, nu/(nu - 2) times as
-/// large, would be as uncertain as nu is.
+/// large, would be as uncertain as nu is. By default nu has its median at 5 and
+/// nine tenths between 1.6 and 16: with more a noise without tails does.
 ///
 /// ```
 /// use couloir::block::Sum;
@@ -28,14 +29,14 @@ use crate::scalar::{Kind, Real};
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Tails<S> {
-    /// The degrees of freedom, a pure number above 2.
+    /// The degrees of freedom, a positive pure number.
     pub nu: S,
 }
 
 impl<S: Clone> Block<S> for Tails<S> {
     const NAME: &'static str = "tails";
     const FIELDS: &'static [Field] =
-        &[Field::new("nu", "1", "Uniform(2, 30)")];
+        &[Field::new("nu", "1", "LogNormal(1.6, 0.7)")];
 
     fn from_values(values: &[S]) -> Self {
         Self { nu: values[0].clone() }
