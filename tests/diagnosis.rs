@@ -35,7 +35,10 @@ fn the_drag_of_the_air_is_found_in_the_coast_down() {
     assert_eq!(found.verdict, Verdict::MissingPhysics);
     let best = &found.mechanisms[0];
     assert_eq!(best.name, "turbulent-drag");
-    assert!(best.log10_bayes_factor > 50.0, "{}", best.log10_bayes_factor);
+    // Against smooth errors without physics, which come nearest, and against
+    // the independent ones that the event names.
+    assert!(best.log10_bayes_factor > 3.0, "{}", best.log10_bayes_factor);
+    assert!(found.improvement.log10_bayes_factor > 50.0);
     // r = (rho A c_d / 2 m) u^2. The report's own 0.348 has the head wind
     // taken out; a model without wind gives about 0.40.
     let (mass, area, density) = CAR;

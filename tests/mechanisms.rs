@@ -61,6 +61,8 @@ const PRIORS: &[(&str, &[&str])] = &[
             "length m Uniform(2.5, 200)",
         ],
     ),
+    ("spreading", &["push m/s2 Normal(0, 1.5)", "time s Uniform(0.2, 16)"]),
+    ("depth-change", &["delta_drag 1/m Normal(0, 0.015)"]),
     ("initial-velocity", &["speed m/s HalfNormal(5)"]),
     ("release-position", &["shift m Normal(0, 20)"]),
     ("clock-offset", &["ahead s Normal(0, 1)"]),
@@ -182,6 +184,10 @@ const FORCES: &[(&str, &[f64], Added)] = &[
     ("surge", &[1.0, 4.0, 4.0], |n| within(n.time, 4.0, 8.0)),
     ("entrainment", &[0.01, 140.0, 45.0], |n| {
         -0.01 * n.speed * n.speed * within(n.place, 140.0, 185.0)
+    }),
+    ("spreading", &[1.0, 6.0], |n| (-n.time / 6.0).exp()),
+    ("depth-change", &[0.01], |n| {
+        -0.01 * (n.place - 100.0) / 200.0 * n.speed * n.speed
     }),
     ("velocity-weakening", &[0.1, 5.0], |n| {
         0.1 * (1.0 - (-n.speed / 5.0).exp()) * n.piece.load

@@ -16,10 +16,11 @@ use crate::diagnosis::evidence::fit::Fit;
 use crate::diagnosis::evidence::noises::noises;
 use crate::diagnosis::evidence::table::{Row, Table};
 use crate::diagnosis::findings::{
-    Diagnosis, Judged, JudgedNoise, LawParameters, ParameterSummary, Verdict,
+    Diagnosis, Judged, JudgedNoise, LawParameters, ParameterSummary, Rest,
+    Verdict,
 };
 use crate::diagnosis::hypothesis::{NONE, UNKNOWN};
-use crate::diagnosis::locate::{FreeForce, free_fit, own_draws};
+use crate::diagnosis::locate::{FreeForce, free_fit, left, own_draws};
 use crate::diagnosis::options::Options;
 use crate::diagnosis::tell::noise::is_other;
 use crate::diagnosis::tell::paste::corrected;
@@ -33,6 +34,7 @@ use crate::mechanism::Mechanism;
 use crate::mechanism::catalogue::is_held;
 use crate::model::{Member, Program, Together, declared_blocks};
 use crate::observe::{Event, Extent};
+use crate::physics::forces::Axis;
 use crate::seed::Seed;
 
 /// Finds where a model and a recording differ and what was left out.
@@ -195,10 +197,35 @@ impl<P: Program> Subject<'_, P> {
             ..compared
         };
         let forces = &row.found()?.forces;
+        diagnosis.rest = self.rest(row, after.as_ref(), seed)?;
         self.write_out(&mut diagnosis, chosen.as_ref(), forces, options);
         diagnosis.forces = forces.clone();
         diagnosis.weak = is_weak(&diagnosis);
         Ok(diagnosis)
+    }
+
+    /// The force that is left beside what was selected.
+    fn rest(
+        &self,
+        row: &Row<'_, P>,
+        after: Option<&FittedModel<'_>>,
+        seed: Seed,
+    ) -> Result<Option<Rest>> {
+        let program = row.noisy.program();
+        let force = match after {
+            Some(after) if after.rough => return Ok(None),
+            Some(FittedModel { mechanisms, fit, .. }) => {
+                let seed = seed.child(50);
+                left(program, mechanisms, fit, &self.extent, seed)?
+            }
+            None => {
+                let forces = &row.found()?.forces;
+                let over = forces.iter().find(|f| f.axis == Axis::Place);
+                let Some(force) = over else { return Ok(None) };
+                force.clone()
+            }
+        };
+        Ok(Some(Rest::of(&force)))
     }
 
     /// From evidences to probabilities, a verdict, and what is added.

@@ -43,6 +43,9 @@ pub struct Diagnosis {
     pub parameters: Vec<ParameterSummary>,
     /// The friction law's parameters, whatever else may act.
     pub law: LawParameters,
+    /// The force that is left beside what was selected; `None` where the
+    /// free-form force itself was.
+    pub rest: Option<Rest>,
     /// The corrected model, written out.
     pub corrected: Corrected,
     /// Its posterior draws; those of the model as it was where nothing is
@@ -206,6 +209,32 @@ pub struct LawParameters {
     /// With a force of free form in the model, along any axis: what can be said
     /// of them when the rest of the physics is left open.
     pub with_free_form_force: Vec<ParameterSummary>,
+}
+
+/// A force of free form on top of a model, as a size.
+#[derive(Debug, Clone, Copy, Default)]
+#[non_exhaustive]
+pub struct Rest {
+    /// Its root mean square along the run \[m/s2\].
+    pub specific_force_sd: f64,
+    /// The 95 % quantile of its size, over the run and its draws \[m/s2\].
+    pub specific_force_q95: f64,
+}
+
+impl Rest {
+    /// That of a force's draws.
+    pub(crate) fn of(force: &FreeForce) -> Self {
+        let mut sizes: Vec<f64> =
+            force.draws.iter().flatten().map(|f| f.abs()).collect();
+        sizes.sort_by(f64::total_cmp);
+        let count = sizes.len().max(1);
+        let square = sizes.iter().map(|f| f * f).sum::<f64>();
+        let last = (0.95 * (count - 1) as f64) as usize;
+        Self {
+            specific_force_sd: (square / count as f64).sqrt(),
+            specific_force_q95: sizes.get(last).copied().unwrap_or(f64::NAN),
+        }
+    }
 }
 
 /// A mechanism as the evidence judges it.

@@ -286,15 +286,9 @@ pub(super) fn diagnosis() -> Diagnosis {
         rivals: vec![],
         improvement: improvement(),
         separating: None,
-        parameters: vec![
-            parameter("friction-patch.delta_mu", "1", 0.139, 0.017),
-            parameter("friction-patch.from", "m", 131.9, 1.8),
-            parameter("friction-patch.length", "m", 55.1, 4.0),
-            parameter("mu", "1", 0.213, 0.012),
-            parameter("xi", "m/s2", 1410.0, 220.0),
-            parameter("sigma2", "m2/s2", 0.096, 0.015),
-        ],
+        parameters: parameters(),
         law: law(),
+        rest: Some(Rest { specific_force_sd: 0.05, specific_force_q95: 0.12 }),
         corrected: corrected(),
         draws: None,
         forces: vec![
@@ -306,6 +300,17 @@ pub(super) fn diagnosis() -> Diagnosis {
         seconds: 6.2,
         warnings: vec![],
     }
+}
+
+fn parameters() -> Vec<ParameterSummary> {
+    vec![
+        parameter("friction-patch.delta_mu", "1", 0.139, 0.017),
+        parameter("friction-patch.from", "m", 131.9, 1.8),
+        parameter("friction-patch.length", "m", 55.1, 4.0),
+        parameter("mu", "1", 0.213, 0.012),
+        parameter("xi", "m/s2", 1410.0, 220.0),
+        parameter("sigma2", "m2/s2", 0.096, 0.015),
+    ]
 }
 
 fn noises() -> Vec<JudgedNoise> {

@@ -24,8 +24,8 @@ pub use evidence::attribute::{Attribution, attribute, pair};
 pub use evidence::fit::{Fit, fit};
 pub use findings::{
     Baseline, BeforeAfter, Corrected, Diagnosis, Improvement, Judged,
-    JudgedNoise, LawParameters, Mismatch, ParameterSummary, Pictured, Rival,
-    Verdict,
+    JudgedNoise, LawParameters, Mismatch, ParameterSummary, Pictured, Rest,
+    Rival, Verdict,
 };
 pub use hypothesis::Hypothesis;
 pub use locate::{CELLS, FreeForce, locate};

@@ -193,6 +193,23 @@ pub(crate) fn outlook<P: Program>(
     Ok(Outlook { log: found.sum.log, own })
 }
 
+/// A force of free form over distance on top of a model with mechanisms that
+/// are fitted: what is left beside them.
+///
+/// # Errors
+/// As [`locate`].
+pub(crate) fn left<P: Program>(
+    program: &P,
+    mechanisms: &[&dyn Mechanism],
+    fit: &Fit,
+    extent: &Extent,
+    seed: Seed,
+) -> Result<FreeForce> {
+    let with = With::new(program, mechanisms);
+    let whole = Fit { added: 0, ..fit.clone() };
+    locate(&with, extent, Axis::Place, &whole, seed)
+}
+
 /// The same along every axis; most sharply where the force is likely.
 pub(super) fn locate_all<P: Program>(
     program: &P,

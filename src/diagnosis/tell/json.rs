@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use crate::diagnosis::locate::FreeForce;
 use crate::diagnosis::{
     Baseline, Corrected, Diagnosis, Improvement, Judged, JudgedNoise,
-    LawParameters, Mismatch, ParameterSummary, Rival,
+    LawParameters, Mismatch, ParameterSummary, Rest, Rival,
 };
 use crate::physics::forces::Axis;
 
@@ -35,6 +35,14 @@ fn law_json(law: &LawParameters) -> Value {
         "as_it_was": parameters_json(&law.as_it_was),
         "corrected": parameters_json(&law.corrected),
         "with_free_form_force": parameters_json(&law.with_free_form_force),
+    })
+}
+
+fn rest_json(rest: &Rest) -> Value {
+    json!({
+        "specific_force_sd": rest.specific_force_sd,
+        "specific_force_q95": rest.specific_force_q95,
+        "unit": "m/s2",
     })
 }
 
@@ -153,6 +161,7 @@ impl Diagnosis {
     pub fn json(&self) -> Value {
         json!({
             "schema": 2,
+            "program": concat!("couloir ", env!("CARGO_PKG_VERSION")),
             "event": self.event,
             "baseline": baseline_json(&self.baseline),
             "verdict": self.verdict.name(),
@@ -167,6 +176,7 @@ impl Diagnosis {
             "improvement": improvement_json(&self.improvement),
             "parameters": parameters_json(&self.parameters),
             "law": law_json(&self.law),
+            "rest": self.rest.as_ref().map(rest_json),
             "corrected": corrected_json(&self.corrected),
             "forces": list(&self.forces, force_json),
             "separating": self.separating,

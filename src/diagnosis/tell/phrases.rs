@@ -79,6 +79,11 @@ pub(crate) fn event(d: &Diagnosis) -> String {
     }
 }
 
+/// The unit of the recording.
+pub(crate) fn recorded_in(d: &Diagnosis) -> &str {
+    d.pictured.first().map_or("", |p| p.unit.as_str())
+}
+
 /// A figure with its unit.
 pub(crate) fn with_unit(number: &str, of: &str) -> String {
     match unit(of).as_str() {

@@ -2,8 +2,9 @@
 //! does not rule out that nothing is missing.
 
 use crate::diagnosis::hypothesis::NONE;
-use crate::diagnosis::tell::phrases::{is_corrected, joined, with_unit};
-use crate::diagnosis::tell::words::recorded_in;
+use crate::diagnosis::tell::phrases::{
+    is_corrected, joined, recorded_in, with_unit,
+};
 use crate::diagnosis::{BeforeAfter, Diagnosis};
 use crate::report::digits::significant;
 

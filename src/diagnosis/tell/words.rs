@@ -4,8 +4,8 @@ use crate::diagnosis::tell::law::law;
 use crate::diagnosis::tell::noise::noise;
 use crate::diagnosis::tell::phrases::{
     all_called, amounts, called, capital, event, friction, interval,
-    is_corrected, judged, log10, model, own_name, probability, range, stretch,
-    with_unit,
+    is_corrected, judged, log10, model, own_name, probability, range,
+    recorded_in, stretch, with_unit,
 };
 use crate::diagnosis::tell::signs::either_sign;
 use crate::diagnosis::tell::weak::disagreement;
@@ -55,6 +55,7 @@ pub fn in_words(d: &Diagnosis) -> Vec<String> {
             said.push(better(d));
             said.extend(ahead(d));
             said.extend(disagreement(d));
+            said.extend(rest(d));
         } else {
             said.push(uncorrected(d));
             said.push(residuals(&d.baseline));
@@ -317,11 +318,6 @@ fn better(d: &Diagnosis) -> String {
     said + "."
 }
 
-/// The unit of the recording.
-pub(crate) fn recorded_in(d: &Diagnosis) -> &str {
-    d.pictured.first().map_or("", |p| p.unit.as_str())
-}
-
 /// Predictions: of the stretch that was held out, and the bands.
 fn ahead(d: &Diagnosis) -> Option<String> {
     let i = &d.improvement;
@@ -344,6 +340,15 @@ fn ahead(d: &Diagnosis) -> Option<String> {
         ));
     }
     (!clauses.is_empty()).then(|| capital(&clauses.join("; ")) + ".")
+}
+
+/// The force that is left beside what was selected.
+fn rest(d: &Diagnosis) -> Option<String> {
+    let rest = d.rest.filter(|r| r.specific_force_q95.is_finite())?;
+    Some(format!(
+        "Any force that is left beside that stays below {} m/s² (95 %).",
+        short(rest.specific_force_q95, 2)
+    ))
 }
 
 /// What the recording cannot tell apart, and what would.
