@@ -58,7 +58,7 @@ impl<S: Clone> Block<S> for Ar<S> {
     const NAME: &'static str = "ar";
     const FIELDS: &'static [Field] = &[
         Field::list("phi", "1", "Uniform(-1, 1)"),
-        Field::new("sigma2", "value2", "InverseGamma(2, 1)"),
+        Field::new("sigma2", "value2", "LogNormal(ln 1e-4 size2, 2)"),
     ];
 
     fn from_values(values: &[S]) -> Self {

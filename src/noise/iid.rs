@@ -30,7 +30,7 @@ pub struct Iid<S> {
 impl<S: Clone> Block<S> for Iid<S> {
     const NAME: &'static str = "iid";
     const FIELDS: &'static [Field] =
-        &[Field::new("sigma2", "value2", "InverseGamma(2, 1)")];
+        &[Field::new("sigma2", "value2", "LogNormal(ln 1e-4 size2, 2)")];
 
     fn from_values(values: &[S]) -> Self {
         Self { sigma2: values[0].clone() }

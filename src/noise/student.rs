@@ -39,7 +39,7 @@ impl<S: Clone> Block<S> for Student<S> {
     const NAME: &'static str = "student";
     const FIELDS: &'static [Field] = &[
         Field::new("dof", "1", "Gamma(2, 10)"),
-        Field::new("scale", "value", "HalfNormal(5)"),
+        Field::new("scale", "value", "LogNormal(ln 0.01 size, 1)"),
     ];
 
     fn from_values(values: &[S]) -> Self {
