@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use couloir::diagnosis::{
-    Fit, Options, Sharing, Together, Verdict, diagnose, fit,
+    Fit, Options, Sharing, Together, Verdict, diagnose, diagnose_together, fit,
 };
 use couloir::draws::summarise;
 use couloir::infer::{Backend, LaplaceMixture, Quiet, SearchSpace, Smc};
@@ -378,4 +378,18 @@ fn events_that_cannot_share_a_law_are_refused() {
     assert!(error.is_input() && error.to_string().contains("voellmy"));
     let none = Together::<Assembled>::new(Vec::new());
     assert!(none.unwrap_err().is_input());
+}
+
+#[test]
+fn events_with_different_noises_are_diagnosed_together() {
+    let mut events: Vec<Assembled> = both().into();
+    let other = events[1].with_noise("ar(1)").unwrap().unwrap();
+    events[1] = other;
+    let together = Together::new(events).unwrap();
+    let options = Options::of_all(&together, 1);
+    assert_eq!(options.noise, "iid | ar(1)");
+    let found =
+        diagnose_together(&together, Sharing::Shared, &options, &Quiet);
+    let noises = found.unwrap().noise;
+    assert!(!noises.is_empty());
 }

@@ -183,7 +183,7 @@ impl<P: Program> Subject<'_, P> {
             law.corrected.clear();
         }
         let group = group(judged);
-        let none = &row.noisy.none;
+        let none = &table.as_it_was()?.none;
         let rivals = chosen.as_ref().map(|c| c.rivals(all, none));
         let mut diagnosis = Diagnosis {
             verdict: *verdict,
@@ -192,7 +192,10 @@ impl<P: Program> Subject<'_, P> {
             group,
             mechanisms: judged.clone(),
             noise: decision.noises.clone(),
-            selected_noise: row.noisy.name.clone(),
+            selected_noise: match verdict {
+                Verdict::Adequate => options.noise.clone(),
+                _ => row.noisy.name.clone(),
+            },
             law,
             ..compared
         };
@@ -277,8 +280,14 @@ impl<P: Program> Subject<'_, P> {
         let (verdict, pictured) = (diagnosis.verdict, &diagnosis.pictured);
         let quantity = pictured.first().map_or("", |p| &p.quantity);
         diagnosis.corrected = corrected(&added, options, quantity);
-        diagnosis.corrected.noise =
-            is_other(diagnosis).then(|| diagnosis.selected_noise.clone());
+        let errors = verdict == Verdict::Errors;
+        if is_other(diagnosis) && (chosen.is_some() || errors) {
+            let noise = diagnosis.selected_noise.clone();
+            diagnosis.corrected.noise = Some(noise);
+            diagnosis.corrected.labels = all_labels(&options.labels(), &added);
+            // It would be under the errors as they were.
+            diagnosis.corrected.model.clear();
+        }
         diagnosis.mismatch =
             mismatch(verdict, &terms, forces, &self.events, pictured);
         mark(diagnosis, &self.events);
@@ -396,6 +405,12 @@ fn corrected_model<'a, P>(
         (None, None) => return None,
     };
     Some(FittedModel { mechanisms, fit, first: seed.child(40), rough })
+}
+
+/// The labels of the mechanisms that a model had, and of those added.
+fn all_labels(had: &[String], added: &[&dyn Mechanism]) -> Vec<String> {
+    let added = added.iter().map(|m| m.label());
+    had.iter().cloned().chain(added).collect()
 }
 
 /// The free-form force along the axis with the most evidence.

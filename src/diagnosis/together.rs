@@ -2,7 +2,7 @@
 //!
 //! A mechanism of the physics or of the sensor is the same in all of them, or
 //! each event has an amount of its own about a common one; what belongs to a
-//! start, a clock or a noise is each event's own, and so are sensors that do
+//! start or a clock is each event's own, and so are sensors that do
 //! not record the same quantity.
 
 use crate::mechanism::catalogue::{Catalogue, applies};

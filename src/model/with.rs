@@ -46,4 +46,8 @@ impl<P: Program> Program for With<'_, P> {
         change.known = self.known.or(change.known);
         run.under(&change, |run| self.program.run(run))
     }
+
+    fn events(&self) -> usize {
+        self.program.events()
+    }
 }

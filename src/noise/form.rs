@@ -53,13 +53,25 @@ impl Form {
     /// Whether it is the same noise as another, or one that makes no other
     /// errors: AR(1) is the Ornstein-Uhlenbeck process seen at even times.
     pub fn is_like(&self, other: &Self) -> bool {
-        let memory = |form: &Self| match form.memory.as_str() {
-            "ar(1)" => "ou".to_owned(),
-            memory => memory.to_owned(),
-        };
-        memory(self) == memory(other)
+        fn blocks(form: &Form) -> Vec<&str> {
+            let all = form.memory.split(" + ");
+            let name = |block| if block == "ar(1)" { "ou" } else { block };
+            let mut all: Vec<&str> = all.map(name).collect();
+            all.sort_unstable();
+            all
+        }
+        blocks(self) == blocks(other)
             && self.has_tails == other.has_tails
             && self.grows == other.grows
+    }
+
+    /// Whether it has no shape that another one of the same memory lacks.
+    #[must_use]
+    pub fn is_simpler_than(&self, other: &Self) -> bool {
+        self.plain().is_like(&other.plain())
+            && !self.is_like(other)
+            && self.has_tails <= other.has_tails
+            && self.grows <= other.grows
     }
 }
 
@@ -88,6 +100,13 @@ mod tests {
         assert!(like("ar(1) + tails", "ou + tails"));
         assert!(!like("ar(1)", "ou + white"));
         assert!(!like("ar(2)", "ou"));
+        assert!(like("white + ou", "ou + white"));
+        assert!(like("ar(1) + white", "ou + white"));
+        let simpler =
+            |a: &str, b: &str| Form::of(a).is_simpler_than(&Form::of(b));
+        assert!(simpler("iid", "white + tails"));
+        assert!(!simpler("white + tails + growth", "white + growth"));
+        assert!(!simpler("white + tails", "white + growth"));
         assert!(!like("iid", "white + growth"));
         assert_eq!(Form::of("student").plain().to_string(), "white");
     }

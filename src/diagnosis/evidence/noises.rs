@@ -18,7 +18,7 @@ use crate::error::Result;
 use crate::infer::{LaplaceMixture, Precision};
 use crate::mechanism::Extent;
 use crate::model::{Posterior, Program};
-use crate::noise::Form;
+use crate::noise::{self, Form};
 use crate::seed::Seed;
 
 /// What errors may remember, besides what the named noise says: nothing, what
@@ -123,7 +123,8 @@ impl<'a, P: Program> Weighed<'a, P> {
 /// The noises that a model is weighed under.
 #[derive(Debug)]
 pub(crate) struct Noises<'a, P> {
-    /// Those that are kept, most evidence first.
+    /// Those that are kept, most evidence first, that of the named one counted
+    /// tenfold.
     pub(crate) kept: Vec<Noisy<'a, P>>,
     /// The named one, where it is not among them.
     pub(crate) dropped: Option<Noisy<'a, P>>,
@@ -171,6 +172,10 @@ impl<'a, P: Program> Survey<'a, '_, P> {
         let mut new = Vec::new();
         for form in forms.into_iter().filter(is_new) {
             let name = form.to_string();
+            // Of events with several noises the names together are none.
+            if noise::parse(&name).is_err() {
+                continue;
+            }
             let other = self.program.with_noise(&name)?;
             // The recording's times may not allow it.
             let allowed = |program: &P| Posterior::new(program).is_ok();
@@ -238,7 +243,7 @@ fn decorated<P: Program>(all: &[Weighed<'_, P>]) -> Vec<Form> {
 fn doubly_decorated<P: Program>(all: &[Weighed<'_, P>]) -> Vec<Form> {
     let forms: Vec<Form> = all.iter().map(Weighed::form).collect();
     let tailed = |form: &&Form| {
-        let alike = |other: &Form| other.plain() == form.plain();
+        let alike = |other: &Form| other.plain().is_like(&form.plain());
         form.grows && forms.iter().any(|f| f.has_tails && alike(f))
     };
     let grow = forms.iter().filter(tailed).cloned();
@@ -249,10 +254,8 @@ fn doubly_decorated<P: Program>(all: &[Weighed<'_, P>]) -> Vec<Form> {
 /// either way.
 fn pays<P: Program>(one: &Weighed<'_, P>, all: &[Weighed<'_, P>]) -> bool {
     let form = one.form();
-    let simpler = all.iter().filter(|other| {
-        let other = other.form();
-        other.plain().is_like(&form.plain()) && !other.is_like(&form)
-    });
+    let simpler =
+        all.iter().filter(|other| other.form().is_simpler_than(&form));
     let best = |way: usize| {
         let logs = simpler.clone().map(|other| other.logs()[way]);
         logs.fold(f64::NEG_INFINITY, f64::max)

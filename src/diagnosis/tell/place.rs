@@ -89,7 +89,7 @@ impl<'a> Courses<'a> {
             let part = |p: &Stretch| (p.from, p.to, mean(&force.over(*p)));
             Some(Mismatch {
                 parts: parts.iter().map(part).collect(),
-                ..course.mismatch(force.axis, stretch, force.over(stretch))
+                ..course.mismatch(force.axis, stretch, &force.over(stretch))
             })
         };
         joined(&runs).into_iter().filter_map(tell).collect()
@@ -104,7 +104,7 @@ impl<'a> Courses<'a> {
             let covering = self.covering(axis, stretch);
             let tell = |(event, course): (usize, &Course)| {
                 let forces = term.forces(event, &course.within(axis, stretch));
-                course.mismatch(axis, stretch, means(&forces))
+                course.mismatch(axis, stretch, &means(&forces))
             };
             return covering.map(tell).into_iter().collect();
         }
@@ -220,9 +220,9 @@ impl<'a> Course<'a> {
         let over = |draw: &Vec<f64>| {
             all.iter().map(|i| draw[*i]).sum::<f64>() / all.len() as f64
         };
-        let drawn = forces.iter().map(over).collect();
+        let drawn: Vec<f64> = forces.iter().map(over).collect();
         let stretch = Stretch { from, to };
-        Some(self.mismatch(Axis::Place, stretch, drawn))
+        Some(self.mismatch(Axis::Place, stretch, &drawn))
     }
 
     /// What is told of a stretch with draws of the mean force there.
@@ -230,14 +230,14 @@ impl<'a> Course<'a> {
         &self,
         axis: Axis,
         stretch: Stretch,
-        drawn: Vec<f64>,
+        drawn: &[f64],
     ) -> Mismatch {
         let ends = [stretch.from, stretch.to];
         let (times, places) = match axis {
             Axis::Time => (ends, ends.map(|t| self.place_at(t))),
             _ => (ends.map(|s| self.time_at(s)), ends),
         };
-        let force = mean(&drawn);
+        let force = mean(drawn);
         let same = drawn.iter().filter(|f| **f * force > 0.0).count();
         let load = self.load(0.5 * (places[0] + places[1]));
         Mismatch {
@@ -249,8 +249,8 @@ impl<'a> Course<'a> {
             place_from: places[0],
             place_to: places[1],
             specific_force: force,
-            specific_force_q05: quantile(drawn.clone(), 0.05),
-            specific_force_q95: quantile(drawn.clone(), 0.95),
+            specific_force_q05: quantile(drawn.to_vec(), 0.05),
+            specific_force_q95: quantile(drawn.to_vec(), 0.95),
             delta_mu: if load > 0.0 { -force / load } else { f64::NAN },
             probability: same as f64 / drawn.len() as f64,
             parts: Vec::new(),

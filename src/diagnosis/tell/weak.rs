@@ -28,7 +28,8 @@ fn worse(d: &Diagnosis) -> Vec<(&'static str, BeforeAfter)> {
 
 /// Whether the verdict is weak.
 pub(crate) fn is_weak(d: &Diagnosis) -> bool {
-    let open = is_corrected(d) && d.group.iter().any(|name| name == NONE);
+    let added = !d.selected.is_empty();
+    let open = added && d.group.iter().any(|name| name == NONE);
     open || !worse(d).is_empty()
 }
 

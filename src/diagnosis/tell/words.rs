@@ -1,7 +1,7 @@
 //! A diagnosis in sentences that a snow scientist can check.
 
 use crate::diagnosis::tell::law::law;
-use crate::diagnosis::tell::noise::noise;
+use crate::diagnosis::tell::noise::{is_other, noise};
 use crate::diagnosis::tell::phrases::{
     all_called, amounts, called, capital, event, friction, interval,
     is_corrected, judged, log10, model, own_name, probability, range,
@@ -28,7 +28,7 @@ const RIVAL: f64 = 0.01;
 /// How many stretches, and how many parts of one, are told.
 const TOLD: usize = 2;
 
-/// The diagnosis in five to eleven plain sentences.
+/// The diagnosis in five to thirteen plain sentences.
 ///
 /// ```
 /// use couloir::diagnosis::{Diagnosis, in_words};
@@ -311,8 +311,12 @@ fn better(d: &Diagnosis) -> String {
     if i.log10_bayes_factor.is_finite() {
         let way = if i.log10_bayes_factor < 0.0 { "against" } else { "for" };
         let size = format!("{:.1}", i.log10_bayes_factor.abs());
+        let what = match is_other(d) && !d.selected.is_empty() {
+            true => "it and for these errors",
+            false => "it",
+        };
         said += &format!(
-            "; the evidence {way} it is a log10 Bayes factor of {size}"
+            "; the evidence {way} {what} is a log10 Bayes factor of {size}"
         );
     }
     said + "."
@@ -346,7 +350,8 @@ fn ahead(d: &Diagnosis) -> Option<String> {
 fn rest(d: &Diagnosis) -> Option<String> {
     let rest = d.rest.filter(|r| r.specific_force_q95.is_finite())?;
     Some(format!(
-        "Any force that is left beside that stays below {} m/s² (95 %).",
+        "Any force that is left beside that is below {} m/s² on 95 % of the \
+         run.",
         short(rest.specific_force_q95, 2)
     ))
 }

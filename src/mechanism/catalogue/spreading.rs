@@ -46,9 +46,10 @@ impl Candidate for Spreading {
 
     fn unknowns(&self) -> Vec<Unknown> {
         let Extent { step, duration, .. } = self.extent;
+        let shortest = step.min(0.5 * duration);
         vec![
             Unknown::amplitude("push", "m/s2", AnyPrior::Normal(0.0, FORCE)),
-            Unknown::other("time", "s", AnyPrior::Uniform(step, duration)),
+            Unknown::other("time", "s", AnyPrior::Uniform(shortest, duration)),
         ]
     }
 
