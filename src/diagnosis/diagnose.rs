@@ -245,12 +245,15 @@ impl<P: Program> Subject<'_, P> {
         let verdict = verdict(&judged);
         let beforehand = Beforehand::of(&judged, &options.odds);
         let logs = log_of_noises(&rows, all, &beforehand);
+        // Under its noise: what others make likely is not looked for there.
+        let alone = [Seen::of(&table.rows[row])];
+        let own = judge_all(&alone, all, &options.odds);
         let choice = Choice {
             program: table.rows[row].noisy.program(),
             all,
             found: table.rows[row].found()?,
             open: table.rows[row].open,
-            judged: &judged,
+            judged: &own,
             beforehand,
             seed,
         };

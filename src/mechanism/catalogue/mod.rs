@@ -73,7 +73,6 @@ fn built_in(extent: &Extent) -> Vec<Box<dyn Mechanism>> {
         Box::new(Cohesion { extent }),
         Box::new(Surge { extent }),
         Box::new(Entrainment { extent }),
-        Box::new(Spreading { extent }),
         Box::new(DepthChange { extent }),
         Box::new(InitialVelocity { extent }),
         Box::new(ReleasePosition { extent }),
@@ -82,6 +81,7 @@ fn built_in(extent: &Extent) -> Vec<Box<dyn Mechanism>> {
         Box::new(SensorDrift { extent }),
     ];
     if extent.carried {
+        all.push(Box::new(Spreading { extent }));
         all.push(Box::new(VelocityWeakening { extent }));
         all.push(Box::new(FrictionPatch { extent }));
         for axis in [place, time] {
