@@ -158,9 +158,7 @@ impl<P: Program> Subject<'_, P> {
         options: &Options,
     ) -> Vec<f64> {
         let rows: Vec<Seen<'_>> = table.rows.iter().map(Seen::of).collect();
-        let judged = judge_all(&rows, &self.all, &options.odds);
-        let beforehand = Beforehand::of(&judged, &options.odds);
-        log_of_noises(&rows, &self.all, &beforehand)
+        log_of_noises(&rows, &self.all, &options.odds)
     }
 
     /// What was found and decided, as plain data.
@@ -244,7 +242,7 @@ impl<P: Program> Subject<'_, P> {
         let mut judged = judge_all(&rows, all, &options.odds);
         let verdict = verdict(&judged);
         let beforehand = Beforehand::of(&judged, &options.odds);
-        let logs = log_of_noises(&rows, all, &beforehand);
+        let logs = log_of_noises(&rows, all, &options.odds);
         // Under its noise: what others make likely is not looked for there.
         let alone = [Seen::of(&table.rows[row])];
         let own = judge_all(&alone, all, &options.odds);
@@ -282,15 +280,11 @@ impl<P: Program> Subject<'_, P> {
         let terms = chosen.map(|c| c.added(all)).unwrap_or_default();
         let (verdict, pictured) = (diagnosis.verdict, &diagnosis.pictured);
         let quantity = pictured.first().map_or("", |p| &p.quantity);
-        diagnosis.corrected = corrected(&added, options, quantity);
-        let errors = verdict == Verdict::Errors;
-        if is_other(diagnosis) && (chosen.is_some() || errors) {
-            let noise = diagnosis.selected_noise.clone();
-            diagnosis.corrected.noise = Some(noise);
-            diagnosis.corrected.labels = all_labels(&options.labels(), &added);
-            // It would be under the errors as they were.
-            diagnosis.corrected.model.clear();
-        }
+        // A force of free form is in no event file, nor what goes with it.
+        let is_whole = chosen.is_some() || verdict == Verdict::Errors;
+        let noise = (is_whole && is_other(diagnosis))
+            .then(|| diagnosis.selected_noise.clone());
+        diagnosis.corrected = corrected(&added, noise, options, quantity);
         diagnosis.mismatch =
             mismatch(verdict, &terms, forces, &self.events, pictured);
         mark(diagnosis, &self.events);
@@ -408,12 +402,6 @@ fn corrected_model<'a, P>(
         (None, None) => return None,
     };
     Some(FittedModel { mechanisms, fit, first: seed.child(40), rough })
-}
-
-/// The labels of the mechanisms that a model had, and of those added.
-fn all_labels(had: &[String], added: &[&dyn Mechanism]) -> Vec<String> {
-    let added = added.iter().map(|m| m.label());
-    had.iter().cloned().chain(added).collect()
 }
 
 /// The free-form force along the axis with the most evidence.

@@ -28,6 +28,7 @@ pub use changed::{rest_changed, sample_changed};
 pub use forces::Forces;
 pub use friction::{Friction, Rate, Site, Sum, Varies};
 pub use lanes::speeds;
+pub(crate) use motion::site;
 pub use motion::{Path, Release, Rest, State};
 pub use sample::{rest, sample};
 pub use track::Track;

@@ -10,7 +10,7 @@ use crate::scalar::{Plain, Real};
 
 /// A mechanism with its posterior draws.
 pub(crate) struct Added<'a> {
-    pub(crate) mechanism: &'a dyn Mechanism,
+    mechanism: &'a dyn Mechanism,
     /// Its own values, draw by draw.
     values: Vec<Vec<f64>>,
     /// The law's dry friction, where it has one, draw by draw.
@@ -102,8 +102,7 @@ fn held(term: &Term<Plain>, at: &Passing, mu: f64) -> f64 {
         return 0.0;
     }
     // A load that is added is rubbed with the law's own friction.
-    let added = term.rate.scaled(term.strength(&moment));
-    let mut with = added;
+    let mut with = term.rate.scaled(term.strength(&moment));
     with.mu += mu;
     let load = at.site.load.max(0.0);
     with.resistance(&at.site, moment.speed).value() - mu * load
@@ -113,16 +112,11 @@ fn held(term: &Term<Plain>, at: &Passing, mu: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::mechanism::catalogue::find;
-    use crate::observe::Event;
-    use crate::observe::Series;
+    use crate::observe::{Event, Series};
     use crate::physics::Track;
 
-    #[test]
-    fn forces_are_those_of_the_formulas() {
-        let track = Track::incline(35.0, 500.0).unwrap();
-        let seen = Series::velocity(vec![1.0, 20.0], vec![2.0, 20.0]);
-        let event = Event::on(track).velocity(seen.unwrap()).build().unwrap();
-        let extent = event.extent();
+    /// A mass on ground that bends.
+    fn passing(place: f64, time: f64, speed: f64) -> Passing {
         let site = Site {
             distance: 0.0,
             pull: 5.0,
@@ -130,7 +124,16 @@ mod tests {
             curvature: 0.01,
             depth: 1.0,
         };
-        let at = Passing { place: 60.0, time: 5.0, speed: 12.0, site };
+        Passing { place, time, speed, site }
+    }
+
+    #[test]
+    fn forces_are_those_of_the_formulas() {
+        let track = Track::incline(35.0, 500.0).unwrap();
+        let seen = Series::velocity(vec![1.0, 20.0], vec![2.0, 20.0]);
+        let event = Event::on(track).velocity(seen.unwrap()).build().unwrap();
+        let extent = event.extent();
+        let at = passing(60.0, 5.0, 12.0);
         let force = |label: &str, values: &[f64]| {
             let found = find(label, &extent, &[]).unwrap();
             let n = values.len();
@@ -157,14 +160,7 @@ mod tests {
         let event = Event::on(track).velocity(seen.unwrap()).build().unwrap();
         let found = find("curvature", &event.extent(), &[]).unwrap();
         let added = Added::new(found.as_ref(), &[&[0.9, 0.3]], 0..1, Some(1));
-        let site = Site {
-            distance: 0.0,
-            pull: 5.0,
-            load: 8.0,
-            curvature: 0.01,
-            depth: 1.0,
-        };
-        let at = Passing { place: 60.0, time: 5.0, speed: 10.0, site };
+        let at = passing(60.0, 5.0, 10.0);
         // mu c kappa u^2.
         let found = added.forces(0, &[at])[0][0];
         assert!((found + 0.3 * 0.9).abs() < 1e-12, "{found}");

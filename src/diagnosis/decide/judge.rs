@@ -134,11 +134,14 @@ pub(crate) fn judge_all(
 pub(crate) fn log_of_noises(
     rows: &[Seen<'_>],
     catalogue: &[Box<dyn Mechanism>],
-    beforehand: &Beforehand<'_>,
+    odds: &Odds,
 ) -> Vec<f64> {
     let of = |row: &Seen<'_>| {
-        let logs = row.logs(catalogue).into_iter();
-        log_sum_exp(logs.map(|(name, log)| beforehand.log(name) + log))
+        let logs = row.logs(catalogue);
+        let names = logs.iter().map(|(name, _)| *name);
+        let beforehand = Beforehand::among(names, odds);
+        let each = logs.iter().map(|(name, log)| beforehand.log(name) + log);
+        log_sum_exp(each)
     };
     rows.iter().map(of).collect()
 }

@@ -3,7 +3,6 @@
 use std::f64::consts::LN_10;
 
 use crate::diagnosis::evidence::fit::Fit;
-use crate::diagnosis::evidence::noises::Noisy;
 use crate::diagnosis::evidence::table::{Row, Table};
 use crate::diagnosis::findings::{JudgedNoise, ParameterSummary};
 use crate::draws::{log_sum_exp, summarise};
@@ -21,7 +20,7 @@ const RISE: f64 = 1.0;
 pub(crate) fn taken<P: Program>(table: &Table<'_, P>, logs: &[f64]) -> usize {
     let more = |a: &usize, b: &usize| logs[*a].total_cmp(&logs[*b]);
     let best = (0..logs.len()).max_by(more).unwrap_or(0);
-    let named = table.rows.iter().position(|row| row.noisy.is_named());
+    let named = table.named();
     let near = |i: &usize| logs[best] - logs[*i] < RISE * LN_10;
     named.filter(near).unwrap_or(best)
 }
@@ -36,13 +35,13 @@ pub(crate) fn judged_noises<P: Program>(
 ) -> Result<Vec<JudgedNoise>> {
     let total = log_sum_exp(logs.iter().copied());
     let named = table.as_it_was()?;
-    let place = table.rows.iter().position(|row| row.noisy.is_named());
+    let place = table.named();
     let mut all = Vec::new();
     for (row, log) in table.rows.iter().zip(logs) {
         let form = Form::of(&row.noisy.name);
         let gain = match place {
             Some(place) => log - logs[place],
-            None => both(&row.noisy) - both(named),
+            None => row.noisy.either_way() - named.either_way(),
         };
         all.push(JudgedNoise {
             name: row.noisy.name.clone(),
@@ -55,11 +54,6 @@ pub(crate) fn judged_noises<P: Program>(
     }
     all.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     Ok(all)
-}
-
-/// ln of its evidence with physics absent or of free form, both alike.
-fn both<P>(noisy: &Noisy<'_, P>) -> f64 {
-    log_sum_exp([noisy.none.log_evidence, noisy.open.log].into_iter())
 }
 
 /// The noise's parameters, with what has the most evidence under it.

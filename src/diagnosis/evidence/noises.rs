@@ -39,6 +39,12 @@ enum Held<'a, P> {
     Other(Box<P>),
 }
 
+impl<P> Held<'_, P> {
+    fn is_named(&self) -> bool {
+        matches!(self, Self::Named(_))
+    }
+}
+
 impl<P> Deref for Held<'_, P> {
     type Target = P;
 
@@ -87,15 +93,16 @@ impl<P> Noisy<'_, P> {
 
     /// Whether it is the one that the model names.
     pub(crate) fn is_named(&self) -> bool {
-        matches!(self.program, Held::Named(_))
+        self.program.is_named()
+    }
+
+    /// ln of its evidence with physics absent or of free form, both alike.
+    pub(crate) fn either_way(&self) -> f64 {
+        either_way([self.none.log_evidence, self.open.log])
     }
 }
 
 impl<'a, P: Program> Weighed<'a, P> {
-    fn is_named(&self) -> bool {
-        matches!(self.program, Held::Named(_))
-    }
-
     fn form(&self) -> Form {
         Form::of(&self.name)
     }
@@ -106,11 +113,11 @@ impl<'a, P: Program> Weighed<'a, P> {
         [self.none.1.log_evidence, self.open.log]
     }
 
-    /// The same in both ways; that of the named one counts tenfold, so that
+    /// The same of either way; that of the named one counts tenfold, so that
     /// others take its place only where they are better by far.
     fn worth(&self) -> f64 {
-        let named = if self.is_named() { LN_10 } else { 0.0 };
-        log_sum_exp(self.logs().into_iter()) + named
+        let named = if self.program.is_named() { LN_10 } else { 0.0 };
+        either_way(self.logs()) + named
     }
 
     fn fitted(self, seed: Seed) -> Result<Noisy<'a, P>> {
@@ -118,6 +125,11 @@ impl<'a, P: Program> Weighed<'a, P> {
         let none = none.fit(&*program, &[], Precision::Sharp, seed)?;
         Ok(Noisy { name, program, none, open })
     }
+}
+
+/// ln of an evidence in either of two ways.
+fn either_way(logs: [f64; 2]) -> f64 {
+    log_sum_exp(logs.into_iter())
 }
 
 /// The noises that a model is weighed under.
@@ -218,12 +230,8 @@ impl<'a, P: Program> Survey<'a, '_, P> {
 /// How far each is below the best of all, in ln, in the way that suits it
 /// better.
 fn short<P: Program>(one: &Weighed<'_, P>, all: &[Weighed<'_, P>]) -> f64 {
-    let best = |way: usize| {
-        let logs = all.iter().map(|other| other.logs()[way]);
-        logs.fold(f64::NEG_INFINITY, f64::max)
-    };
-    let logs = one.logs();
-    (best(0) - logs[0]).min(best(1) - logs[1])
+    let ([without, with], logs) = (most(all.iter()), one.logs());
+    (without - logs[0]).min(with - logs[1])
 }
 
 /// The noises that are near the best, each with tails and with growth.
@@ -256,12 +264,17 @@ fn pays<P: Program>(one: &Weighed<'_, P>, all: &[Weighed<'_, P>]) -> bool {
     let form = one.form();
     let simpler =
         all.iter().filter(|other| other.form().is_simpler_than(&form));
-    let best = |way: usize| {
-        let logs = simpler.clone().map(|other| other.logs()[way]);
-        logs.fold(f64::NEG_INFINITY, f64::max)
-    };
-    let logs = one.logs();
-    logs[0] > best(0) || logs[1] > best(1)
+    let ([without, with], logs) = (most(simpler), one.logs());
+    logs[0] > without || logs[1] > with
+}
+
+/// The most evidence of some noises, in ln, in either way.
+fn most<'w, 'a: 'w, P: Program + 'a>(
+    noises: impl Iterator<Item = &'w Weighed<'a, P>>,
+) -> [f64; 2] {
+    noises.map(Weighed::logs).fold([f64::NEG_INFINITY; 2], |most, logs| {
+        [most[0].max(logs[0]), most[1].max(logs[1])]
+    })
 }
 
 /// The best of those that are near the best, the named one and the best in
@@ -289,7 +302,8 @@ fn kept<P: Program>(
     let (mut kept, mut dropped) = (Vec::new(), None);
     for one in all {
         let seed = seed.called(&one.name).child(4);
-        let (is_near, is_named) = (near.contains(&one.name), one.is_named());
+        let is_near = near.contains(&one.name);
+        let is_named = one.program.is_named();
         if most.contains(&one.name) || (is_near && is_named) {
             kept.push(one.fitted(seed)?);
         } else if is_named {

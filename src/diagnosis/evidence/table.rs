@@ -64,6 +64,11 @@ impl<'a, P: Program> Table<'a, P> {
         all.find(|noisy| noisy.is_named()).ok_or_else(no_noise)
     }
 
+    /// Which row is the named noise's, where it is kept.
+    pub(crate) fn named(&self) -> Option<usize> {
+        self.rows.iter().position(|row| row.noisy.is_named())
+    }
+
     /// Whether the named noise is kept.
     pub(crate) fn keeps_named(&self) -> bool {
         self.dropped.is_none()

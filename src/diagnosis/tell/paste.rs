@@ -8,9 +8,10 @@ use crate::mechanism::Mechanism;
 use crate::mechanism::catalogue::is_built_in;
 
 /// The corrected model, written out: the mechanisms that the model had, and
-/// those added to it.
+/// those added to it, and another noise where there is one.
 pub(crate) fn corrected(
     added: &[&dyn Mechanism],
+    noise: Option<String>,
     options: &Options,
     quantity: &str,
 ) -> Corrected {
@@ -19,17 +20,19 @@ pub(crate) fn corrected(
     let law = format!("du/dt = g sin(theta) - r, r of {}", options.friction);
     let terms = all.iter().map(|m| format!("{}: {}", m.name(), m.formula()));
     let equation = [law].into_iter().chain(terms).collect();
-    if added.is_empty() {
+    if added.is_empty() && noise.is_none() {
         return Corrected { equation, ..Corrected::default() };
     }
-    let is_found = all.iter().all(|m| is_built_in(m.name()));
+    // The declarations are those of the errors as they were.
+    let is_known =
+        noise.is_none() && all.iter().all(|m| is_built_in(m.name()));
     let model = options
         .declarations
         .as_ref()
-        .filter(|_| is_found)
+        .filter(|_| is_known)
         .map_or_else(String::new, |own| model_text(&all, own, quantity));
     let labels = all.iter().map(|m| m.label()).collect();
-    Corrected { equation, model, labels, noise: None }
+    Corrected { equation, model, labels, noise }
 }
 
 /// A program with the model and the mechanisms added to it.

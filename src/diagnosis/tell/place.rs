@@ -6,8 +6,8 @@ use crate::diagnosis::findings::{Diagnosis, Mismatch, Pictured, Verdict};
 use crate::diagnosis::locate::{FreeForce, Stretch};
 use crate::mechanism::Reach;
 use crate::observe::Event;
-use crate::physics::Site;
 use crate::physics::forces::Axis;
+use crate::physics::site;
 
 /// Runs of the free-form force nearer than this are one \[m\].
 const NEAR: f64 = 25.0;
@@ -131,11 +131,11 @@ impl<'a> Courses<'a> {
             let [first, last] = course.ends(axis);
             stretch.to.min(last) - stretch.from.max(first)
         };
-        let most = |best: &'_ Course<'a>, other: &'_ Course<'a>| {
-            covered(other) > covered(best)
+        let most = |best, other| match covered(other) > covered(best) {
+            true => other,
+            false => best,
         };
-        let all = self.0.iter();
-        let course = all.reduce(|a, b| if most(a, b) { b } else { a })?;
+        let course = self.0.iter().reduce(most)?;
         Some((course.number, course))
     }
 }
@@ -278,13 +278,7 @@ fn way(event: &Event, times: &[f64], places: &[f64]) -> Vec<Passing> {
             place: places[i],
             time: times[i],
             speed: (places[after] - places[before]) / lapse,
-            site: Site {
-                distance: places[i],
-                pull: piece.pull,
-                load: piece.load,
-                curvature: piece.curvature,
-                depth: event.depth(),
-            },
+            site: site(piece, event.depth()),
         }
     };
     (0..times.len()).map(point).collect()
