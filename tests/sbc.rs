@@ -105,7 +105,7 @@ impl<K: Kind> couloir::noise::Noise<K> for Firstless<Real<K>> {
                     -0.5 * (self.sigma2.ln() + eta * eta / self.sigma2)
                 }
             };
-            visit(Conditional { log_density, deviate: Real::new(0.0) });
+            visit(Conditional::new(log_density, Real::new(0.0)));
         }
         Ok(())
     }

@@ -2,10 +2,11 @@
 //! its parameters.
 //!
 //! With standardised innovations d_i and their scales s_i, the log likelihood
-//! is -sum(d_i^2/2 + ln s_i), and the expectation of minus its Hessian is
-//! about sum(dd_i dd_i' + dln s_i dln s_i'), from first derivatives alone
-//! (Gauss and Newton's matrix, with the part of the scales). The prior adds
-//! its own curvature, parameter by parameter.
+//! of normal errors is -sum(d_i^2/2 + ln s_i), and the expectation of minus its
+//! Hessian is about sum(dd_i dd_i' + dln s_i dln s_i'), from first derivatives
+//! alone (Gauss and Newton's matrix, with the part of the scales); other laws
+//! say themselves what a value tells. The prior adds its own curvature,
+//! parameter by parameter.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -17,7 +18,7 @@ use super::pass::run;
 use super::program::Program;
 use super::run::Source;
 use crate::error::{Error, Outcome, Result};
-use crate::noise::Noise;
+use crate::noise::{Informing, Noise};
 use crate::observe::Series;
 use crate::prior::Prior;
 use crate::scalar::{Forward, Grad, Kind, Real};
@@ -60,9 +61,10 @@ impl<K: Forward> Listener<K> for Columns {
         noise: &dyn Noise<K>,
     ) -> Outcome {
         noise.walk(series.grid(), residuals, &mut |value| {
-            let d = value.deviate;
-            self.push(d);
-            self.push(-value.log_density - 0.5 * d * d);
+            let Informing { place, size, shape } = value.informing;
+            self.push(place);
+            self.push(size);
+            shape.into_iter().for_each(|shape| self.push(shape));
         })
     }
 

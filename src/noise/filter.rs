@@ -11,7 +11,7 @@ use smallvec::SmallVec;
 use super::gaussian::Gaussian;
 use super::like::noise_like;
 use super::part::{Lapse, MOST_STATES, Part, Square, Whole};
-use super::student::{Law, log_peak, normal_score};
+use super::student::{Known, Law, log_peak, normal_score};
 use super::{Conditional, Grid, Matern32, Noise, Ou, White, one_per_time};
 use crate::block::Sum;
 use crate::error::Stop;
@@ -255,6 +255,7 @@ impl<K: Kind> Innovation<K> {
     fn sized(&self, mut value: Conditional<K>) -> Conditional<K> {
         if let Some(log_size) = self.log_size {
             value.log_density -= log_size;
+            value.informing.size += log_size;
         }
         value
     }
@@ -377,10 +378,10 @@ impl<K: Kind> Noise<K> for Whole<'_, K> {
                 visit(next.sized(law.at(next.error)));
             });
         };
-        let peak = log_peak(nu);
+        let (peak, known) = (log_peak(nu), Known::of(nu.value()));
         self.each(at, seen, |next| {
             let law = Law::new(nu, peak, next.variance);
-            visit(next.sized(law.at(next.error)));
+            visit(law.at(next.error, next.log_size, &known));
         })
     }
 

@@ -26,10 +26,8 @@ impl<K: Kind> Gaussian<K> {
     /// One value.
     #[inline(always)]
     pub(crate) fn at(&self, r: Real<K>) -> Conditional<K> {
-        Conditional {
-            log_density: self.constant - r * r * self.half_precision,
-            deviate: r * self.inverse_sd,
-        }
+        let log_density = self.constant - r * r * self.half_precision;
+        Conditional::new(log_density, r * self.inverse_sd)
     }
 
     /// The log density of `count` independent values with that sum of

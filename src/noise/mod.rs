@@ -59,6 +59,29 @@ pub struct Conditional<K: Kind> {
     /// The innovation over its scale, as the noise's own law sees it;
     /// [`Noise::standardise`] makes it a standard normal deviate.
     pub deviate: Real<K>,
+    pub(crate) informing: Informing<K>,
+}
+
+/// What a value tells of the parameters: numbers whose derivatives, each times
+/// itself, add up to about its Fisher information.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Informing<K: Kind> {
+    /// Of the innovation's place.
+    pub(crate) place: Real<K>,
+    /// Of its size.
+    pub(crate) size: Real<K>,
+    /// Of what else its law has.
+    pub(crate) shape: Option<Real<K>>,
+}
+
+impl<K: Kind> Conditional<K> {
+    /// A residual whose law is normal in the deviate d, or about so: with its
+    /// scale s, ln p = -d^2/2 - ln s and a constant.
+    pub fn new(log_density: Real<K>, deviate: Real<K>) -> Self {
+        let size = -log_density - 0.5 * deviate * deviate;
+        let informing = Informing { place: deviate, size, shape: None };
+        Self { log_density, deviate, informing }
+    }
 }
 
 /// How large errors are that depend on those before them.

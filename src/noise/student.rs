@@ -4,10 +4,10 @@ use rand_distr::{Distribution, StudentT};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 use statrs::function::gamma::{digamma, ln_gamma};
 
-use super::{Conditional, Grid, Noise, is_positive, one_per_time};
+use super::{Conditional, Grid, Informing, Noise, is_positive, one_per_time};
 use crate::block::{Block, Field};
 use crate::error::Stop;
-use crate::scalar::{Kind, Real};
+use crate::scalar::{Kind, Real, polynomial};
 use crate::seed::Rng;
 
 /// r_i ~ t_dof(0, w_i), w_i^2 = scale^2 + s_i^2, independent; s_i is the known
@@ -94,9 +94,8 @@ impl<K: Kind> Noise<K> for Student<Real<K>> {
         residuals: &[Real<K>],
         visit: &mut dyn FnMut(Conditional<K>),
     ) -> Result<(), Stop> {
-        self.each(at, residuals, |law, r| {
-            visit(law.at(r));
-        })
+        let known = Known::of(self.dof.value());
+        self.each(at, residuals, |law, r| visit(law.at(r, None, &known)))
     }
 
     fn log_likelihood(
@@ -148,7 +147,10 @@ pub(super) fn normal_score(deviate: f64, dof: f64) -> f64 {
 /// A Student density of mean 0 with its constants worked out once.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Law<K: Kind> {
+    dof: Real<K>,
     constant: Real<K>,
+    /// ln w.
+    log_width: Real<K>,
     power: Real<K>,
     /// 1 / (dof w^2).
     precision: Real<K>,
@@ -162,25 +164,95 @@ impl<K: Kind> Law<K> {
         log_peak: Real<K>,
         square: Real<K>,
     ) -> Self {
+        let log_width = 0.5 * square.ln();
         Self {
-            constant: log_peak - 0.5 * square.ln(),
+            dof,
+            constant: log_peak - log_width,
+            log_width,
             power: 0.5 * (dof + 1.0),
             precision: 1.0 / (dof * square),
             inverse_width: 1.0 / square.sqrt(),
         }
     }
 
-    /// One value.
+    /// One value, its size on top of its width where that changes.
+    ///
+    /// A value far out tells the less of its place the farther out it is: in
+    /// proportion to (dof + 1)/(dof + d^2), which is 1 on average.
     #[inline]
-    pub(super) fn at(&self, r: Real<K>) -> Conditional<K> {
+    pub(super) fn at(
+        &self,
+        r: Real<K>,
+        log_size: Option<Real<K>>,
+        known: &Known,
+    ) -> Conditional<K> {
         let deviate = r * self.inverse_width;
-        Conditional { log_density: self.log_density(r), deviate }
+        let (d, dof) = (deviate.value(), self.dof.value());
+        let near = known.place * (dof + 1.0) / (dof + d * d);
+        let log_size = log_size.unwrap_or_default();
+        let log_width = self.log_width + log_size;
+        let informing = Informing {
+            // What is left of the derivative is that of r over w.
+            place: (deviate + self.log_width * d) * near.sqrt(),
+            size: log_width * known.size + self.dof * known.both,
+            shape: Some(self.dof * known.dof),
+        };
+        let log_density = self.log_density(r) - log_size;
+        Conditional { log_density, deviate, informing }
     }
 
     #[inline]
     fn log_density(&self, r: Real<K>) -> Real<K> {
         self.constant - self.power * (r * r * self.precision).ln_1p()
     }
+}
+
+/// The Fisher information of one value of the Student law (Lange, Little and
+/// Taylor 1989, appendix): of its place in widths (dof + 1)/(dof + 3), of its
+/// log width 2 dof/(dof + 3), of both log width and dof
+/// -2/((dof + 1)(dof + 3)), and of dof; the last three as the factor L of
+/// L L'.
+pub(super) struct Known {
+    place: f64,
+    size: f64,
+    both: f64,
+    dof: f64,
+}
+
+impl Known {
+    pub(super) fn of(dof: f64) -> Self {
+        let size = (2.0 * dof / (dof + 3.0)).sqrt();
+        let both = -2.0 / ((dof + 1.0) * (dof + 3.0)) / size;
+        let own = of_dof(dof) - both * both;
+        let place = (dof + 1.0) / (dof + 3.0);
+        Self { place, size, both, dof: own.max(0.0).sqrt() }
+    }
+}
+
+/// The Fisher information of the degrees of freedom.
+fn of_dof(dof: f64) -> f64 {
+    if dof > 200.0 {
+        // The difference of two large numbers; its first terms are within
+        // 1e-3 of it.
+        return (3.5 - 13.0 / dof) / dof.powi(4);
+    }
+    let bends = trigamma(0.5 * dof) - trigamma(0.5 * (dof + 1.0));
+    let rest = (dof + 5.0) / (2.0 * dof * (dof + 1.0) * (dof + 3.0));
+    0.25 * bends - rest
+}
+
+/// The derivative of the digamma function: by psi'(x) = psi'(x + 1) + 1/x^2 to
+/// where its asymptotic series holds (Abramowitz and Stegun 1972, 6.4.12).
+fn trigamma(mut x: f64) -> f64 {
+    let mut sum = 0.0;
+    while x < 20.0 {
+        sum += 1.0 / (x * x);
+        x += 1.0;
+    }
+    let u = 1.0 / (x * x);
+    let series =
+        polynomial(u, &[1.0 / 6.0, -1.0 / 30.0, 1.0 / 42.0, -1.0 / 30.0]);
+    sum + 1.0 / x + 0.5 * u + series * u / x
 }
 
 /// ln G((dof + 1)/2) - ln G(dof/2) - ln(pi dof)/2, the log density of the
@@ -200,4 +272,58 @@ pub(super) fn log_peak<K: Kind>(dof: Real<K>) -> Real<K> {
 
 fn log_gamma<K: Kind>(x: Real<K>) -> Real<K> {
     x.chain(ln_gamma(x.value()), digamma(x.value()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::Grad;
+
+    type D = Real<Grad<4>>;
+
+    /// What the log density and the numbers that inform have for derivatives
+    /// by place, log width, and degrees of freedom, at an angle whose tangent
+    /// is the deviate; and the probability there.
+    fn at(angle: f64, dof: f64) -> (f64, [f64; 3], [[f64; 3]; 3]) {
+        let log_width = D::variable(0.3, 1);
+        let nu = D::variable(dof, 2);
+        let square = (2.0 * log_width).exp();
+        let law = Law::new(nu, log_peak(nu), square);
+        let r = angle.tan() * 0.3_f64.exp() - D::variable(0.0, 0);
+        let value = law.at(r, None, &Known::of(dof));
+        let Informing { place, size, shape } = value.informing;
+        let of = |x: D| [x.partial(0), x.partial(1), x.partial(2)];
+        let stretch = 0.3_f64.exp() / angle.cos().powi(2);
+        let p = value.log_density.value().exp() * stretch;
+        (p, of(value.log_density), [of(place), of(size), of(shape.unwrap())])
+    }
+
+    #[test]
+    fn what_a_value_tells_is_the_mean_square_of_its_score() {
+        const STEPS: usize = 20_000;
+        for dof in [2.0, 4.0, 30.0, 250.0] {
+            let (mut known, mut told) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
+            for k in 0..STEPS {
+                let step = std::f64::consts::PI / STEPS as f64;
+                let angle =
+                    (k as f64 + 0.5) * step - 0.5 * STEPS as f64 * step;
+                let (p, score, numbers) = at(angle, dof);
+                for i in 0..3 {
+                    for j in 0..3 {
+                        let all = numbers.iter().map(|n| n[i] * n[j]);
+                        known[i][j] += p * step * score[i] * score[j];
+                        told[i][j] += p * step * all.sum::<f64>();
+                    }
+                }
+            }
+            for i in 0..3 {
+                for j in 0..3 {
+                    // The midpoint rule, and above 200 the first terms.
+                    let size = (known[i][i] * known[j][j]).sqrt();
+                    let off = (told[i][j] - known[i][j]).abs() / size;
+                    assert!(off < 1e-3, "{dof} {i} {j}: {off}");
+                }
+            }
+        }
+    }
 }

@@ -11,11 +11,11 @@ use std::ops::Deref;
 
 use rayon::prelude::*;
 
-use super::fit::{Fit, Prospect, prospect};
+use super::fit::{Fit, Prospect, fit, prospect};
 use crate::diagnosis::locate::{Outlook, outlook};
 use crate::draws::log_sum_exp;
 use crate::error::Result;
-use crate::infer::{LaplaceMixture, Precision};
+use crate::infer::{LaplaceMixture, Precision, SearchSpace};
 use crate::mechanism::Extent;
 use crate::model::{Posterior, Program};
 use crate::noise::{self, Form};
@@ -28,6 +28,9 @@ const MEMORIES: [&str; 5] =
     ["white", "ou", "ou + white", "matern32 + white", "matern32 + ou"];
 /// In log10: how far below the best a noise may be that is kept.
 const NEAR: f64 = 2.5;
+/// From how many draws of the prior climbs start before it is known whether a
+/// noise is kept.
+const STARTS: usize = 8;
 /// The most noises that mechanisms are weighed under; the named one may come
 /// on top.
 const MOST: usize = 3;
@@ -74,12 +77,9 @@ pub(crate) struct Noisy<'a, P> {
 struct Weighed<'a, P> {
     name: String,
     program: Held<'a, P>,
-    none: Looked,
+    none: Prospect,
     open: Outlook,
 }
-
-/// The model without physics: what a search found of it, and a rough fit.
-type Looked = (Prospect, Fit);
 
 impl<P> Noisy<'_, P> {
     pub(crate) fn program(&self) -> &P {
@@ -110,7 +110,7 @@ impl<'a, P: Program> Weighed<'a, P> {
     /// About ln of its evidence in either way: without physics, and with a
     /// force.
     fn logs(&self) -> [f64; 2] {
-        [self.none.1.log_evidence, self.open.log]
+        [self.none.log(), self.open.log]
     }
 
     /// The same of either way; that of the named one counts tenfold, so that
@@ -121,8 +121,8 @@ impl<'a, P: Program> Weighed<'a, P> {
     }
 
     fn fitted(self, seed: Seed) -> Result<Noisy<'a, P>> {
-        let Self { name, program, none: (none, _), open } = self;
-        let none = none.fit(&*program, &[], Precision::Sharp, seed)?;
+        let Self { name, program, open, .. } = self;
+        let none = fit(&*program, &[], &LaplaceMixture::default(), seed)?;
         Ok(Noisy { name, program, none, open })
     }
 }
@@ -193,7 +193,7 @@ impl<'a, P: Program> Survey<'a, '_, P> {
             let allowed = |program: &P| Posterior::new(program).is_ok();
             new.extend(other.filter(allowed).map(|program| (name, program)));
         }
-        let weighed: Vec<Result<(Looked, Outlook)>> = new
+        let weighed: Vec<Result<(Prospect, Outlook)>> = new
             .par_iter()
             .map(|(name, program)| self.weighed(name, program))
             .collect();
@@ -214,17 +214,20 @@ impl<'a, P: Program> Survey<'a, '_, P> {
         Ok(Weighed { name: name.to_owned(), program, none, open })
     }
 
-    fn weighed(&self, name: &str, program: &P) -> Result<(Looked, Outlook)> {
+    fn weighed(&self, name: &str, program: &P) -> Result<(Prospect, Outlook)> {
         let seed = self.seed.called(name);
-        let backend = LaplaceMixture::default();
-        let none = prospect(program, &[], backend, seed.child(0))?;
-        let everywhere = f64::NEG_INFINITY;
-        let none = none.pursued(program, &[], everywhere, seed.child(1))?;
+        let none = prospect(program, &[], rough_search(), seed.child(0))?;
         let rough = Precision::Rough;
-        let fit = none.fit(program, &[], rough, seed.child(2))?;
-        let open = outlook(program, self.extent, fit.own(), seed.child(3))?;
-        Ok(((none, fit), open))
+        let own = none.fit(program, &[], rough, seed.child(2))?.best;
+        let open = outlook(program, self.extent, &own, seed.child(3))?;
+        Ok((none, open))
     }
+}
+
+/// A search that says which noises are worth a thorough one.
+fn rough_search() -> LaplaceMixture {
+    let space = SearchSpace { prior_starts: STARTS, ..SearchSpace::default() };
+    LaplaceMixture::within(space).quick()
 }
 
 /// How far each is below the best of all, in ln, in the way that suits it

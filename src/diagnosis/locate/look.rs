@@ -10,14 +10,33 @@ use crate::error::{Error, Result};
 use crate::infer::{Climb, Landscape, Mixture, Slope};
 use crate::mechanism::Extent;
 
-/// The grid of processes, and how far apart its places are; the least size is
-/// hardly a force.
-const LENGTHS: [f64; 3] = [-1.0, 0.0, 1.0];
-const SIZES: [f64; 5] = [-2.0, -1.0, 0.0, 1.0, 2.0];
+/// A grid of processes: their lengths and sizes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Grid {
+    lengths: &'static [f64],
+    sizes: &'static [f64],
+    /// By which lengths it grows, from either edge on, where its edge holds
+    /// nearly as much as its best.
+    beyond: [&'static [f64]; 2],
+}
+
+/// The least size is hardly a force.
+pub(super) const FINE: Grid = Grid {
+    lengths: &[-1.0, 0.0, 1.0],
+    sizes: &[-2.0, -1.0, 0.0, 1.0, 2.0],
+    beyond: [&[-1.0, -2.0], &[1.0, 2.0, 3.0]],
+};
+/// Enough to begin from where noises are compared: their evidences are then
+/// within 1 in ln of those from the fine grid.
+pub(super) const COARSE: Grid = Grid {
+    lengths: &[0.0],
+    sizes: &[-1.0, 1.0],
+    beyond: [&[0.0, -2.0], &[0.0, 2.0]],
+};
+/// How wide what is drawn about a place of the fine grid lies.
 const SPACING: f64 = 0.6;
-/// By which lengths the grid grows, from either edge on, where its edge holds
-/// nearly as much as its best, in ln.
-const BEYOND: [&[f64]; 2] = [&[-1.0, -2.0], &[1.0, 2.0, 3.0]];
+/// How much less than the best an edge holds, in ln, beyond which a grid
+/// grows.
 const NEARLY: f64 = 4.0;
 /// Looks that hold so much less than the best, in ln, teach nothing.
 const NEGLIGIBLE: f64 = 10.0;
@@ -70,15 +89,17 @@ impl Sought<'_, '_> {
     ///
     /// # Errors
     /// A model that fails, or one that has no density near these.
-    pub(super) fn looks(&self, own: &[f64]) -> Result<Vec<Look>> {
+    pub(super) fn looks(&self, own: &[f64], grid: Grid) -> Result<Vec<Look>> {
         let own = DVector::from_column_slice(own);
         let none = self.cells.tangent(DVector::zeros(CELLS), own)?;
         let Some(none) = none else { return Err(no_mode()) };
-        let mut found = self.columns(&LENGTHS, &none)?;
-        for lengths in BEYOND {
+        let Grid { lengths, sizes, beyond } = grid;
+        let mut found = self.columns(lengths, sizes, &none)?;
+        for lengths in beyond {
             for pair in lengths.windows(2) {
                 if matters(&found, pair[0]) {
-                    found.extend(self.columns(&pair[1..], &none)?);
+                    let next = self.columns(&pair[1..], sizes, &none)?;
+                    found.extend(next);
                 }
             }
         }
@@ -86,12 +107,15 @@ impl Sought<'_, '_> {
     }
 
     /// The looks at some lengths, from both sides.
-    fn columns(&self, lengths: &[f64], none: &Tangent) -> Result<Vec<Look>> {
+    fn columns(
+        &self,
+        lengths: &[f64],
+        sizes: &[f64],
+        none: &Tangent,
+    ) -> Result<Vec<Look>> {
         let columns = lengths.into_par_iter().map(|&length| {
-            let mut up = self.along(length, SIZES, none, &[])?;
-            let mut sizes = SIZES;
-            sizes.reverse();
-            let down = self.along(length, sizes, none, &up)?;
+            let mut up = self.along(length, sizes.iter(), none, &[])?;
+            let down = self.along(length, sizes.iter().rev(), none, &up)?;
             up.extend(down);
             Ok(up)
         });
@@ -99,15 +123,15 @@ impl Sought<'_, '_> {
     }
 
     /// The looks at one length, each from the one before, until one is known.
-    fn along(
+    fn along<'s>(
         &self,
         length: f64,
-        sizes: [f64; SIZES.len()],
+        sizes: impl Iterator<Item = &'s f64>,
         none: &Tangent,
         known: &[Look],
     ) -> Result<Vec<Look>> {
         let mut found: Vec<Look> = Vec::new();
-        for size in sizes {
+        for &size in sizes {
             let process = Process(length, size);
             let from = found.last().map_or(none, |look| &look.tangent);
             let Some(look) = self.look(process, from)? else { continue };

@@ -27,7 +27,7 @@ use crate::seed::Seed;
 
 use free_form::{FreeForm, range};
 pub(super) use free_form::{NOUN, SAYS};
-use look::{Look, Sought, proposal};
+use look::{COARSE, FINE, Look, Sought, proposal};
 use marginal::Marginal;
 pub use process::CELLS;
 pub(super) use process::Process;
@@ -44,7 +44,7 @@ const FEW: Effort = Effort { last: (60, 60), ..EFFORT };
 const FAR: f64 = 3.0;
 /// The same where only about how much it brings is asked for.
 const GLANCE: Effort =
-    Effort { learning: 30, rounds: 2, last: (40, 40), ..EFFORT };
+    Effort { learning: 40, rounds: 2, last: (60, 60), ..EFFORT };
 
 /// The free-form force as a mechanism of its own, with the fit that it has.
 ///
@@ -180,7 +180,7 @@ pub(crate) fn outlook<P: Program>(
     let with = With::new(program, &[&form]);
     let posterior = Posterior::new(&with)?;
     let sought = Sought { cells: Cells(&posterior), extent };
-    let looks = sought.looks(own)?;
+    let looks = sought.looks(own, COARSE)?;
     let higher =
         |a: &&Look, b: &&Look| a.log_evidence.total_cmp(&b.log_evidence);
     let best = looks.iter().max_by(higher);
@@ -240,7 +240,7 @@ fn located<P: Program>(
         .enumerate()
         .map(|(i, posterior)| {
             let sought = Sought { cells: Cells(posterior), extent };
-            let looks = sought.looks(none.own())?;
+            let looks = sought.looks(none.own(), FINE)?;
             let mixture = proposal(&looks)?;
             let marginal = Marginal { sought, looks, shared };
             let seed = seed.child(i as u64).child(0);
