@@ -6,7 +6,8 @@ use crate::diagnosis::compare::baseline::baseline;
 use crate::diagnosis::compare::checks::{
     FittedModel, checks, improvement, pictured,
 };
-use crate::diagnosis::decide::choose::{Choice, Chosen};
+use crate::diagnosis::decide::choose::{Choice, Explained};
+use crate::diagnosis::decide::chosen::Chosen;
 use crate::diagnosis::decide::judge::{
     Beforehand, Seen, check_odds, group, judge_all, log_of_noises, separating,
     verdict,
@@ -17,7 +18,7 @@ use crate::diagnosis::evidence::noises::noises;
 use crate::diagnosis::evidence::table::{Row, Table};
 use crate::diagnosis::findings::{
     Diagnosis, Judged, JudgedNoise, LawParameters, ParameterSummary, Rest,
-    Verdict,
+    Rival, Verdict,
 };
 use crate::diagnosis::hypothesis::{NONE, UNKNOWN};
 use crate::diagnosis::locate::{FreeForce, free_fit, left, own_draws};
@@ -97,6 +98,18 @@ struct Decision {
     row: usize,
     /// What is added to the model.
     chosen: Option<Chosen>,
+    /// What does nearly as well as a force of free form that is not.
+    equal: Option<Chosen>,
+}
+
+impl Decision {
+    /// What would do nearly as well as what was decided.
+    fn rivals(&self, all: &[Box<dyn Mechanism>], none: &Fit) -> Vec<Rival> {
+        let of = |c: &Chosen| c.rivals(all, none);
+        let mut rivals = self.chosen.as_ref().map(of).unwrap_or_default();
+        rivals.extend(self.equal.iter().map(|c| c.as_rival(all, none)));
+        rivals
+    }
 }
 
 impl<P: Program> Subject<'_, P> {
@@ -182,10 +195,10 @@ impl<P: Program> Subject<'_, P> {
         }
         let group = group(judged);
         let none = &table.as_it_was()?.none;
-        let rivals = chosen.as_ref().map(|c| c.rivals(all, none));
+        let rivals = decision.rivals(all, none);
         let mut diagnosis = Diagnosis {
             verdict: *verdict,
-            rivals: rivals.unwrap_or_default(),
+            rivals,
             separating: separating(&group, judged),
             group,
             mechanisms: judged.clone(),
@@ -256,7 +269,8 @@ impl<P: Program> Subject<'_, P> {
             seed,
         };
         let chosen = choice.choose(verdict)?;
-        let (mut verdict, chosen) = choice.explained(verdict, chosen);
+        let Explained { mut verdict, chosen, equal } =
+            choice.explained(verdict, chosen);
         if let Some(chosen) = &chosen {
             chosen.call(&mut judged, all);
         }
@@ -264,7 +278,7 @@ impl<P: Program> Subject<'_, P> {
             verdict = Verdict::Errors;
         }
         let noises = judged_noises(table, &logs)?;
-        Ok(Decision { judged, noises, verdict, row, chosen })
+        Ok(Decision { judged, noises, verdict, row, chosen, equal })
     }
 
     /// Where the mismatch is, and what the corrected model is.

@@ -72,6 +72,15 @@ fn rivals_are_told_once_and_of_the_same_term() {
     let said = "explain this, and with entrainment of snow along a stretch \
                 instead of a patch of higher friction nearly as well; alone,";
     assert!(words.contains(said), "{words}");
+    // What differs by both terms is in no term's place.
+    let told =
+        Diagnosis { rivals: vec![with(["surge", "slope-bias"])], ..told };
+    assert!(!in_words(&told).join(" ").contains("nearly as well"));
+    // A force of free form that two of the named ones make.
+    let rivals = vec![with(["friction-patch", "surge"])];
+    let told = Diagnosis { rivals, ..of(Verdict::Unexplained, "unknown") };
+    let words = in_words(&told).join(" ");
+    assert!(words.contains("together do about as well"), "{words}");
 }
 
 #[test]

@@ -3,5 +3,7 @@
 
 pub(crate) mod added;
 pub(crate) mod choose;
+pub(crate) mod chosen;
 pub(crate) mod judge;
 pub(crate) mod noise;
+pub(crate) mod stepwise;

@@ -205,10 +205,14 @@ fn explanation(d: &Diagnosis) -> String {
 
 /// What would do nearly as well as one of several selected.
 fn instead(d: &Diagnosis) -> String {
+    // Of those that differ by one term.
     let gives_up = |rival: &Rival| {
-        d.selected.iter().find(|name| !rival.names.contains(name))
+        let mut gone =
+            d.selected.iter().filter(|name| !rival.names.contains(name));
+        let first = gone.next();
+        first.filter(|_| gone.next().is_none())
     };
-    let Some(given_up) = d.rivals.first().and_then(gives_up) else {
+    let Some(given_up) = d.rivals.iter().find_map(gives_up) else {
         return String::new();
     };
     let mut named: Vec<String> = Vec::new();
@@ -240,9 +244,15 @@ fn unexplained(d: &Diagnosis) -> String {
         ),
         None => String::new(),
     };
+    let together = d.rivals.first().map_or(String::new(), |rival| {
+        format!(
+            "; {} together do about as well",
+            all_called(d, &rival.names, "and")
+        )
+    });
     format!(
         "A force of free form explains this better than any named \
-         mechanism{sure}{near}."
+         mechanism{sure}{near}{together}."
     )
 }
 
@@ -268,8 +278,7 @@ fn sizes(d: &Diagnosis) -> Option<String> {
         (!clauses.is_empty())
             .then(|| format!("{}: {}", plain(name), clauses.join(", ")))
     };
-    let told: Vec<String> =
-        d.selected.iter().take(TOLD).filter_map(of).collect();
+    let told: Vec<String> = d.selected.iter().filter_map(of).collect();
     (!told.is_empty()).then(|| {
         format!("In figures, with 90 % intervals, {}.", told.join("; "))
     })

@@ -1,0 +1,117 @@
+//! What was chosen to be added to a model.
+
+use std::f64::consts::LN_10;
+use std::ops::Range;
+
+use crate::diagnosis::compare::checks::rows_of;
+use crate::diagnosis::decide::added::Added;
+use crate::diagnosis::evidence::fit::Fit;
+use crate::diagnosis::findings::{Judged, Rival};
+use crate::draws::median;
+use crate::mechanism::{Family, Mechanism};
+
+/// What was chosen to be added to the model.
+#[derive(Debug, Clone)]
+pub(crate) struct Chosen {
+    /// Which of the catalogue.
+    pub(crate) which: Vec<usize>,
+    pub(crate) fit: Fit,
+    /// What would do nearly as well in its place, with ln of its evidence.
+    pub(crate) rivals: Vec<(Vec<usize>, f64)>,
+}
+
+impl Chosen {
+    pub(crate) fn new(which: Vec<usize>, fit: Fit) -> Self {
+        Self { which, fit, rivals: Vec::new() }
+    }
+
+    /// What would do nearly as well, most evidence first.
+    pub(crate) fn rivals(
+        &self,
+        all: &[Box<dyn Mechanism>],
+        none: &Fit,
+    ) -> Vec<Rival> {
+        let rivals = self.rivals.iter();
+        rivals.map(|(which, log)| rival(which, *log, all, none)).collect()
+    }
+
+    /// The same of the chosen themselves.
+    pub(crate) fn as_rival(
+        &self,
+        all: &[Box<dyn Mechanism>],
+        none: &Fit,
+    ) -> Rival {
+        rival(&self.which, self.fit.log_evidence, all, none)
+    }
+
+    /// Calls the chosen mechanisms by the signs that they have together: one
+    /// that pushes alone may brake beside another.
+    pub(crate) fn call(
+        &self,
+        judged: &mut [Judged],
+        all: &[Box<dyn Mechanism>],
+    ) {
+        let rows = rows_of(&self.fit.draws);
+        for (mechanism, own) in self.columns(all) {
+            let amplitudes = rows.iter().map(|row| row[own.start]);
+            let amplitude = median(&amplitudes.collect::<Vec<_>>());
+            let named = judged.iter_mut().find(|m| m.name == mechanism.name());
+            if let Some(named) = named {
+                named.noun = mechanism.noun(amplitude);
+            }
+        }
+    }
+
+    /// The family of all together: of the physics, where one of them is.
+    pub(crate) fn family(&self, all: &[Box<dyn Mechanism>]) -> Option<Family> {
+        self.mechanisms(all).iter().map(|m| m.family()).min()
+    }
+
+    /// The mechanisms themselves.
+    pub(crate) fn mechanisms<'a>(
+        &self,
+        all: &'a [Box<dyn Mechanism>],
+    ) -> Vec<&'a dyn Mechanism> {
+        self.which.iter().map(|&i| all[i].as_ref()).collect()
+    }
+
+    /// The mechanisms with the columns of their parameters in the draws.
+    pub(crate) fn columns<'a>(
+        &self,
+        all: &'a [Box<dyn Mechanism>],
+    ) -> Vec<(&'a dyn Mechanism, Range<usize>)> {
+        let mut end = 0;
+        let mechanisms = self.mechanisms(all).into_iter();
+        mechanisms
+            .map(|mechanism| {
+                let begin = end;
+                end += mechanism.unknowns().len();
+                (mechanism, begin..end)
+            })
+            .collect()
+    }
+
+    /// The mechanisms with their draws.
+    pub(crate) fn added<'a>(
+        &self,
+        all: &'a [Box<dyn Mechanism>],
+    ) -> Vec<Added<'a>> {
+        let rows = rows_of(&self.fit.draws);
+        let is_mu = |name: &String| name == "mu" || name.ends_with(".mu");
+        let mu = self.fit.draws.names().iter().position(is_mu);
+        let columns = self.columns(all).into_iter();
+        columns.map(|(m, own)| Added::new(m, &rows, own, mu)).collect()
+    }
+}
+
+fn rival(
+    which: &[usize],
+    log_evidence: f64,
+    all: &[Box<dyn Mechanism>],
+    none: &Fit,
+) -> Rival {
+    Rival {
+        names: which.iter().map(|&i| all[i].name().to_owned()).collect(),
+        log10_bayes_factor: (log_evidence - none.log_evidence) / LN_10,
+    }
+}

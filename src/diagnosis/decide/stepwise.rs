@@ -1,0 +1,258 @@
+//! Which terms together: they are added, exchanged and dropped until none of
+//! these raises the evidence by more than terms cost.
+//!
+//! A second term is beforehand as unlikely as the first was, and a recording
+//! is told by one cause rather than by two: a set of terms is worth ln of its
+//! evidence, less what its names cost beforehand and a fixed price for each
+//! term after the first. To add the best to the best single term alone would
+//! keep a first term that others make idle, and never meet a pair of which
+//! neither part does well alone.
+
+use std::collections::BTreeSet;
+use std::f64::consts::LN_10;
+
+use rayon::prelude::*;
+
+use crate::diagnosis::decide::chosen::Chosen;
+use crate::diagnosis::decide::judge::Beforehand;
+use crate::diagnosis::evidence::attribute::{
+    Attribution, Known, extend, pair,
+};
+use crate::diagnosis::evidence::fit::Fit;
+use crate::error::Result;
+use crate::mechanism::Mechanism;
+use crate::model::Program;
+use crate::seed::Seed;
+
+/// In log10: by how much a further term must raise the evidence, besides what
+/// it costs beforehand; and how near a rival comes.
+pub(crate) const RISE: f64 = 1.0;
+/// The most terms.
+const MOST: usize = 3;
+
+/// A search for the terms that are worth most together.
+pub(crate) struct Stepwise<'a, P> {
+    pub(crate) program: &'a P,
+    pub(crate) all: &'a [Box<dyn Mechanism>],
+    /// The fit of each of them.
+    pub(crate) found: &'a Attribution,
+    pub(crate) beforehand: &'a Beforehand<'a>,
+    /// Which of them may be terms, most probable first.
+    pub(crate) candidates: Vec<usize>,
+    pub(crate) seed: Seed,
+}
+
+/// Terms that differ from others by one.
+struct Step {
+    /// Which of the others are kept.
+    kept: Vec<usize>,
+    added: Option<usize>,
+}
+
+impl Step {
+    /// The terms that it leads to, in the order that they came in.
+    fn terms(&self, before: &[usize]) -> Vec<usize> {
+        let kept = self.kept.iter().map(|&k| before[k]);
+        kept.chain(self.added).collect()
+    }
+}
+
+impl<P: Program> Stepwise<'_, P> {
+    /// The terms that are worth most, from a first one on.
+    ///
+    /// # Errors
+    /// A model that fails.
+    pub(crate) fn from(&self, first: usize) -> Result<Chosen> {
+        let fit = self.found.candidates[first].clone();
+        let mut best = Chosen::new(vec![first], fit);
+        let mut tried = BTreeSet::new();
+        let mut others: Vec<Chosen> = Vec::new();
+        loop {
+            let mut steps = self.steps(&best);
+            steps.retain(|step| tried.insert(sorted(step.terms(&best.which))));
+            let fits = steps.par_iter().map(|step| self.fit(&best, step));
+            let found = fits.collect::<Result<Vec<_>>>()?.into_iter();
+            others.extend(found.flatten());
+            let Some(next) = self.better(&others, &best) else { break };
+            let next = others.swap_remove(next);
+            others.push(std::mem::replace(&mut best, next));
+        }
+        best.rivals = self.rivals(&best, others);
+        Ok(best)
+    }
+
+    /// All sets that differ from the chosen by one term.
+    fn steps(&self, chosen: &Chosen) -> Vec<Step> {
+        let names: Vec<&str> = self.all.iter().map(|m| m.name()).collect();
+        steps(&chosen.which, &self.candidates, &names)
+    }
+
+    /// The fit that a step leads to, where it promises to be worth as much as
+    /// what was chosen, or nearly so with as many terms.
+    fn fit(&self, chosen: &Chosen, step: &Step) -> Result<Option<Chosen>> {
+        let which = step.terms(&chosen.which);
+        let near = if which.len() == chosen.which.len() { RISE } else { 0.0 };
+        let hurdle = self.worth_of(&chosen.which, &chosen.fit) - near * LN_10
+            + self.price(&which);
+        let number = which.iter().fold(0, |n, &i| n * 1000 + i as u64 + 1);
+        let seed = self.seed.child(1000 + number);
+        let fit = match (&which[..], step.added) {
+            (&[a, b], _) => self.pair([a, b], hurdle, seed)?,
+            (_, Some(added)) => {
+                self.extended(chosen, &step.kept, added, hurdle, seed)?
+            }
+            _ => None,
+        };
+        Ok(fit.map(|fit| Chosen::new(which, fit)))
+    }
+
+    fn pair(
+        &self,
+        which: [usize; 2],
+        hurdle: f64,
+        seed: Seed,
+    ) -> Result<Option<Fit>> {
+        let mechanisms = which.map(|i| self.all[i].as_ref());
+        let fits = which.map(|i| &self.found.candidates[i]);
+        pair(self.program, mechanisms, fits, hurdle, seed)
+    }
+
+    /// One term more beside some of the chosen.
+    fn extended(
+        &self,
+        chosen: &Chosen,
+        kept: &[usize],
+        added: usize,
+        hurdle: f64,
+        seed: Seed,
+    ) -> Result<Option<Fit>> {
+        let columns = chosen.columns(self.all);
+        let kept: Vec<_> = kept.iter().map(|&k| columns[k].clone()).collect();
+        let place = chosen.fit.mechanism();
+        let parameters: Vec<f64> = kept
+            .iter()
+            .flat_map(|(_, own)| &place[own.clone()])
+            .copied()
+            .collect();
+        let mechanisms: Vec<_> = kept.iter().map(|(m, _)| *m).collect();
+        let known = Known {
+            mechanisms: &mechanisms,
+            added: &parameters,
+            own: chosen.fit.own(),
+        };
+        let added = (self.all[added].as_ref(), &self.found.candidates[added]);
+        extend(self.program, &known, added, hurdle, seed)
+    }
+
+    /// Which of others is worth most, where that is more than what was chosen
+    /// is worth by more than their errors.
+    fn better(&self, others: &[Chosen], chosen: &Chosen) -> Option<usize> {
+        let worth = |c: &Chosen| self.worth_of(&c.which, &c.fit);
+        let most = |a: &usize, b: &usize| {
+            worth(&others[*a]).total_cmp(&worth(&others[*b]))
+        };
+        let best = (0..others.len()).max_by(most)?;
+        let error = others[best].fit.se.hypot(chosen.fit.se);
+        (worth(&others[best]) > worth(chosen) + error).then_some(best)
+    }
+
+    /// Those of as many terms that are worth nearly as much, most first.
+    fn rivals(
+        &self,
+        chosen: &Chosen,
+        mut others: Vec<Chosen>,
+    ) -> Vec<(Vec<usize>, f64)> {
+        let worth = |c: &Chosen| self.worth_of(&c.which, &c.fit);
+        let near = worth(chosen) - RISE * LN_10;
+        others.retain(|other| {
+            other.which.len() == chosen.which.len() && worth(other) > near
+        });
+        others.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
+        let rivals = others.into_iter().filter(|c| c.which.len() > 1);
+        rivals.map(|c| (c.which, c.fit.log_evidence)).collect()
+    }
+
+    /// ln of the evidence of terms, less what these cost.
+    fn worth_of(&self, which: &[usize], fit: &Fit) -> f64 {
+        fit.log_evidence - self.price(which)
+    }
+
+    /// What terms cost, in ln: how much less likely beforehand they are than
+    /// none of them, and the rise that each after the first has to bring.
+    fn price(&self, which: &[usize]) -> f64 {
+        let names = which.iter().map(|&i| self.all[i].name());
+        let unlikely: f64 = names.map(|n| self.beforehand.price(n)).sum();
+        unlikely + RISE * LN_10 * (which.len() as f64 - 1.0)
+    }
+}
+
+/// All sets that differ from some terms by one, no name twice in any.
+fn steps(which: &[usize], candidates: &[usize], names: &[&str]) -> Vec<Step> {
+    let terms = which.len();
+    let all: Vec<usize> = (0..terms).collect();
+    let without = |k: usize| -> Vec<usize> {
+        all.iter().copied().filter(|&i| i != k).collect()
+    };
+    let mut steps: Vec<Step> = Vec::new();
+    for &added in candidates {
+        let is_new = |k: &usize| names[which[*k]] != names[added];
+        let mut all_kept = Vec::new();
+        if terms < MOST {
+            all_kept.push(all.clone());
+        }
+        if terms > 1 {
+            all_kept.extend((0..terms).map(without));
+        }
+        all_kept.retain(|kept| kept.iter().all(is_new));
+        let step = |kept| Step { kept, added: Some(added) };
+        steps.extend(all_kept.into_iter().map(step));
+    }
+    if terms > 2 {
+        let dropped = (0..terms).map(without);
+        steps.extend(dropped.map(|kept| Step { kept, added: None }));
+    }
+    steps
+}
+
+fn sorted(mut terms: Vec<usize>) -> Vec<usize> {
+    terms.sort_unstable();
+    terms
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn terms_are_added_exchanged_and_dropped() {
+        let names = ["patch", "surge", "surge", "drag", "clock"];
+        // The best variant of each name.
+        let candidates = [0, 2, 3, 4];
+        let from = |which: &[usize]| -> BTreeSet<Vec<usize>> {
+            let all = steps(which, &candidates, &names).into_iter();
+            all.map(|step| sorted(step.terms(which))).collect()
+        };
+        let sets = |all: &[&[usize]]| -> BTreeSet<Vec<usize>> {
+            all.iter().map(|set| set.to_vec()).collect()
+        };
+        assert_eq!(from(&[0]), sets(&[&[0, 2], &[0, 3], &[0, 4]]));
+        // The other variant of a name is its rival, not its company; and a
+        // term exchanged for itself is what there was.
+        let two = sets(&[
+            &[0, 2, 3],
+            &[0, 2, 4],
+            &[0, 2],
+            &[0, 3],
+            &[0, 4],
+            &[2, 3],
+            &[2, 4],
+        ]);
+        assert_eq!(from(&[0, 2]), two);
+        let three = from(&[0, 2, 3]);
+        for dropped in [[0, 2], [0, 3], [2, 3]] {
+            assert!(three.contains(&dropped[..]), "{dropped:?}");
+        }
+        assert!(three.contains(&[2, 3, 4][..]), "the first is exchanged");
+        assert!(three.iter().all(|set| set.len() <= MOST));
+    }
+}
