@@ -25,6 +25,7 @@ fn extent() -> Extent {
     Extent {
         begin: 100.0,
         run: 200.0,
+        since: 0.0,
         duration: 16.0,
         speed: 10.0,
         step: 0.2,

@@ -393,3 +393,41 @@ fn events_with_different_noises_are_diagnosed_together() {
     let noises = found.unwrap().noise;
     assert!(!noises.is_empty());
 }
+
+#[test]
+fn moments_are_on_the_shared_clock() {
+    // The same slide, its clock read 7 s later: what happens at a moment of
+    // the shared clock happens 7 s sooner by its own.
+    let plain = slide("one", 0.0, 1);
+    let event = plain.event();
+    let late = Event::on(event.track().clone())
+        .named("one")
+        .clock(7.0)
+        .velocity(event.velocity.clone())
+        .build()
+        .unwrap();
+    let late = of(late);
+    assert_eq!(late.event().extent().since, 7.0);
+    let cases: [(&str, &[f64], &[f64]); 4] = [
+        ("surge", &[0.5, 3.0, 2.0], &[0.5, 10.0, 2.0]),
+        ("friction-step(time)", &[0.1, 4.0], &[0.1, 11.0]),
+        ("friction-hardening(time, linear)", &[0.1], &[0.1]),
+        ("spreading", &[0.6, 2.0], &[0.6, 2.0]),
+    ];
+    for (label, own, shared) in cases {
+        let value = |model: &Assembled, amounts: &[f64]| {
+            let extent = model.event().extent();
+            let found = find(label, &extent, &[]).unwrap();
+            let with = With::new(model, &[found.as_ref()]);
+            likelihood(&with, &[amounts, &[0.26, 0.1]].concat())
+        };
+        let (a, b) = (value(&plain, own), value(&late, shared));
+        // Round-off of a sum of 50 squares.
+        assert!((a - b).abs() < 1e-9 * a.abs(), "{label}: {a} {b}");
+        let without = likelihood(&late, &[0.26, 0.1]);
+        assert!((b - without).abs() > 0.1, "{label} does nothing");
+    }
+    let both = Together::new(vec![plain, late]).unwrap();
+    let extent = both.extent();
+    assert_eq!((extent.since, extent.duration), (0.0, 17.0));
+}

@@ -353,7 +353,7 @@ pub struct Pictured {
     pub quantity: String,
     /// The recording's unit.
     pub unit: String,
-    /// Times \[s\].
+    /// Times \[s\], on the clock that events share.
     pub times: Vec<f64>,
     /// Recorded values.
     pub values: Vec<f64>,

@@ -23,7 +23,7 @@ pub(super) const MOST_BYTES: u64 = 1 << 20;
 
 /// An event with the model that its file asks for.
 ///
-/// What a file leaves out is: `track.origin` 0, `release.x` the track's first
+/// What a file leaves out is: `event.start` 0, `track.origin` 0, `release.x` the track's first
 /// point, `release.velocity` 0, `flow.depth` 1 m (then xi stands for the
 /// product xi h), `recording.window` 0, `model.friction` "voellmy",
 /// `model.noise` "iid", and the blocks' own priors.
@@ -112,6 +112,7 @@ pub fn parse_event<R: Read>(
     let top = document.top();
     top.only(&[
         "name",
+        "event",
         "track",
         "release",
         "flow",
@@ -229,6 +230,9 @@ fn incline(section: &Section, slope: f64, length: f64) -> Result<Track> {
 /// The event before anything was recorded.
 fn at_rest(top: &Section, track: Track) -> Result<Event> {
     let (release, flow) = (top.section("release")?, top.section("flow")?);
+    let clock = top.section("event")?;
+    clock.only(&["start"])?;
+    let start = clock.number("start")?.unwrap_or(0.0);
     release.only(&["x", "velocity"])?;
     flow.only(&["depth"])?;
     let depth = flow.number("depth")?.unwrap_or(1.0);
@@ -252,6 +256,7 @@ fn at_rest(top: &Section, track: Track) -> Result<Event> {
         .named(name)
         .release(x, velocity)
         .depth(depth)
+        .clock(start)
         .build()
         .map_err(|error| release.about("x", error))
 }

@@ -7,7 +7,9 @@ pub struct Extent {
     pub begin: f64,
     /// How long it is \[m\].
     pub run: f64,
-    /// The time of the last value \[s\].
+    /// When the recorded run begins on the shared clock \[s\].
+    pub since: f64,
+    /// The time from then to the last value \[s\].
     pub duration: f64,
     /// The upper quartile of the recorded speeds \[m/s\].
     pub speed: f64,
@@ -30,6 +32,7 @@ impl Extent {
     pub(crate) const EVERYTHING: Self = Self {
         begin: 0.0,
         run: 1.0,
+        since: 0.0,
         duration: 1.0,
         speed: 1.0,
         step: 0.1,

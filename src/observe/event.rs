@@ -29,6 +29,7 @@ pub struct Event {
     depth: f64,
     distance: f64,
     speed: f64,
+    clock: f64,
     /// Recorded speeds; empty where none were.
     pub velocity: Series,
     /// Recorded distances since the release; empty where none were.
@@ -67,6 +68,14 @@ impl EventBuilder {
     #[must_use]
     pub fn depth(mut self, depth: f64) -> Self {
         self.event.depth = depth;
+        self
+    }
+
+    /// The moment of t = 0 on a clock that several events share \[s\]: those
+    /// of sensors in one flow.
+    #[must_use]
+    pub fn clock(mut self, start: f64) -> Self {
+        self.event.clock = start;
         self
     }
 
@@ -121,6 +130,12 @@ impl EventBuilder {
                 event.speed
             )));
         }
+        if !event.clock.is_finite() {
+            return Err(Error::input(format!(
+                "event.start is {}; expected seconds on the shared clock",
+                event.clock
+            )));
+        }
         event.distance = event
             .track
             .distance_at(self.x)
@@ -142,6 +157,7 @@ impl Event {
             depth: 1.0,
             distance: 0.0,
             speed: 0.0,
+            clock: 0.0,
             velocity: Series::absent(Quantity::Velocity),
             position: Series::absent(Quantity::Position),
             acceleration: Series::absent(Quantity::Acceleration),
@@ -169,6 +185,11 @@ impl Event {
     /// Distance along the slope \[m\] and speed \[m/s\] at t = 0.
     pub fn release<K: Kind>(&self) -> Release<K> {
         Release { distance: self.distance.into(), speed: self.speed.into() }
+    }
+
+    /// The moment of t = 0 on the shared clock \[s\].
+    pub fn clock(&self) -> f64 {
+        self.clock
     }
 
     /// The recorded series; most events have one.

@@ -44,6 +44,7 @@ impl Event {
         Extent {
             begin: self.track().origin() + self.start(),
             run: 1.0,
+            since: self.clock(),
             duration: 1.0,
             speed: upper_quartile(speeds.to_vec()),
             step,
@@ -67,7 +68,7 @@ impl Event {
 
 impl Extent {
     /// The extent of several events: from the least place to the greatest,
-    /// as long as the longest lasts.
+    /// and from the first moment to the last.
     pub fn of_all<'e>(events: impl Iterator<Item = &'e Event>) -> Self {
         let mut speeds = Vec::new();
         let extents = events.map(|event| {
@@ -77,7 +78,9 @@ impl Extent {
         let all = extents.reduce(|a, b| Self {
             begin: a.begin.min(b.begin),
             run: (a.begin + a.run).max(b.begin + b.run) - a.begin.min(b.begin),
-            duration: a.duration.max(b.duration),
+            since: a.since.min(b.since),
+            duration: (a.since + a.duration).max(b.since + b.duration)
+                - a.since.min(b.since),
             speed: a.speed,
             step: a.step.min(b.step),
             behind: a.behind.min(b.behind),
@@ -92,6 +95,7 @@ impl Extent {
             None => Self {
                 begin: 0.0,
                 run: 1.0,
+                since: 0.0,
                 duration: 1.0,
                 speed,
                 step: 1.0,

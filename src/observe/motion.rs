@@ -115,7 +115,7 @@ impl Event {
         sample_changed(&path, law, &forces, release, times, speed_only, visit)
     }
 
-    /// The forces of a change. Where none is added, nothing says how often a
+    /// The forces of a change, by the event's own clock. Where none is added, nothing says how often a
     /// law that varies with the speed has to be looked at: as often as under
     /// a mechanism's force.
     fn forces<'c, K: Kind>(
@@ -123,7 +123,10 @@ impl Event {
         change: &'c Change<K>,
     ) -> Cow<'c, Forces<K>> {
         if change.forces.step.is_finite() {
-            return Cow::Borrowed(&change.forces);
+            return match self.clock() {
+                0.0 => Cow::Borrowed(&change.forces),
+                clock => Cow::Owned(change.forces.clone().sooner(clock)),
+            };
         }
         let last = self.samples().last().copied().filter(|last| *last > 0.0);
         let step = last.unwrap_or(1.0) / STEPS;

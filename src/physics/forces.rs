@@ -197,6 +197,19 @@ impl<K: Kind> Term<K> {
         }
     }
 
+    /// Lets what belongs to moments happen so much sooner [s].
+    fn sooner(&mut self, by: f64) {
+        if let Stretch::Between(Axis::Time, edges) = &mut self.over {
+            edges.iter_mut().for_each(|edge| *edge -= by);
+        }
+        match &mut self.shape {
+            Shape::Linear(Axis::Time, range)
+            | Shape::Saturating(Axis::Time, range, _)
+            | Shape::Cells(Axis::Time, range, _) => range.begin -= by,
+            _ => {}
+        }
+    }
+
     fn add_to(&self, rate: &mut Rate<K>, at: &Moment<K>) {
         if self.acts(at) {
             *rate = *rate + self.rate.scaled(self.strength(at));
@@ -311,6 +324,12 @@ impl<K: Kind> Forces<K> {
     /// Whether they change nothing.
     pub fn is_none(&self) -> bool {
         self.terms.is_empty() && self.tilt.is_constantly_zero()
+    }
+
+    /// The same so much sooner \[s\].
+    pub(crate) fn sooner(mut self, by: f64) -> Self {
+        self.terms.iter_mut().for_each(|term| term.sooner(by));
+        self
     }
 
     pub(crate) fn bends(&self) -> bool {

@@ -207,6 +207,11 @@ fn last(series: &[Vec<f64>]) -> Vec<f64> {
     series.iter().flat_map(of).collect()
 }
 
+/// The recorded times on the shared clock.
+fn shared_times(event: &Event, series: &Series) -> Vec<f64> {
+    series.times().iter().map(|t| event.clock() + t).collect()
+}
+
 /// Where the mass is at the recorded times: the predicted speeds summed by
 /// the trapezoidal rule, or the predicted positions.
 fn places_of(event: &Event, series: &Series, predicted: &[f64]) -> Vec<f64> {
@@ -274,7 +279,7 @@ pub(crate) fn pictured(
                 event: event.name().to_owned(),
                 quantity: series.quantity().name().to_owned(),
                 unit: series.quantity().unit().to_owned(),
-                times: series.times().to_vec(),
+                times: shared_times(event, series),
                 values: series.values().to_vec(),
                 places: after.places[i].clone(),
                 before: before.bands[i].clone(),

@@ -34,7 +34,7 @@ pub(super) struct FreeForm {
 pub(super) fn range(extent: &Extent, axis: Axis) -> Range {
     match axis {
         Axis::Place => Range { begin: extent.begin, span: extent.run },
-        Axis::Time => Range { begin: 0.0, span: extent.duration },
+        Axis::Time => Range { begin: extent.since, span: extent.duration },
         Axis::Speed => Range { begin: 0.0, span: 1.3 * extent.speed },
     }
 }

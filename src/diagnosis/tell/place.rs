@@ -154,10 +154,10 @@ struct Course<'a> {
 impl<'a> Course<'a> {
     fn new(number: usize, event: &'a Event, pictured: &Pictured) -> Self {
         let start = event.track().origin() + event.start();
-        let mut times = vec![0.0];
+        let mut times = vec![event.clock()];
         let mut places = vec![start];
         for (&t, &s) in pictured.times.iter().zip(&pictured.places) {
-            if t > 0.0 {
+            if t > event.clock() {
                 times.push(t);
                 places.push(s.max(places[places.len() - 1]));
             }

@@ -21,9 +21,10 @@ pub struct FrictionHardening {
 
 impl FrictionHardening {
     fn range(&self) -> Range {
+        let Extent { begin, run, since, duration, .. } = self.extent;
         match self.axis {
-            Axis::Time => Range { begin: 0.0, span: self.extent.duration },
-            _ => Range { begin: self.extent.begin, span: self.extent.run },
+            Axis::Time => Range { begin: since, span: duration },
+            _ => Range { begin, span: run },
         }
     }
 }

@@ -54,10 +54,10 @@ impl Candidate for FrictionStep {
     }
 
     fn unknowns(&self) -> Vec<Unknown> {
-        let Extent { begin, run, duration, .. } = self.extent;
+        let Extent { begin, run, since, duration, .. } = self.extent;
         let amplitude = AnyPrior::Normal(0.0, FRICTION);
         let edge = match self.axis {
-            Axis::Time => [0.0, duration],
+            Axis::Time => [since, since + duration],
             _ => [begin, begin + run],
         };
         vec![

@@ -65,7 +65,8 @@ impl Missing for Spreading {
         let [push, time] = [values[0], values[1]];
         let of = |constant| Rate { constant, ..Rate::default() };
         let mut change = everywhere(&self.extent, of(push));
-        let range = Range { begin: 0.0, span: self.extent.duration };
+        let Extent { since, duration, .. } = self.extent;
+        let range = Range { begin: since, span: duration };
         for term in &mut change.forces.terms {
             term.shape = Shape::Saturating(Axis::Time, range, time);
         }

@@ -36,10 +36,10 @@ impl Candidate for Surge {
 
     fn unknowns(&self) -> Vec<Unknown> {
         let amplitude = AnyPrior::Normal(0.0, FORCE);
-        let Extent { duration, step, .. } = self.extent;
+        let Extent { since, duration, step, .. } = self.extent;
         let (names, shortest) = (["from", "lasts"], step.min(0.5 * duration));
         let [from, lasts] =
-            stretch(names, Axis::Time, [0.0, duration], shortest);
+            stretch(names, Axis::Time, [since, since + duration], shortest);
         vec![Unknown::amplitude("force", "m/s2", amplitude), from, lasts]
     }
 
