@@ -263,8 +263,20 @@ pub struct Judged {
     pub form: Option<&'static str>,
     /// The best variant's parameters.
     pub parameters: Vec<ParameterSummary>,
-    /// ln of the evidence of each variant, by its label.
-    pub variants: Vec<(String, f64)>,
+    /// Its variants.
+    pub variants: Vec<Variant>,
+}
+
+/// A variant of a mechanism: over distance or over time, or in another form.
+#[derive(Debug, Clone, Default)]
+#[non_exhaustive]
+pub struct Variant {
+    /// What to write under `mechanisms` in event.toml.
+    pub label: String,
+    /// Along what it acts.
+    pub coordinate: Option<Axis>,
+    /// ln of its evidence.
+    pub log_evidence: f64,
 }
 
 /// A noise as the evidence judges it.

@@ -25,7 +25,7 @@ pub use evidence::fit::{Fit, fit};
 pub use findings::{
     Baseline, BeforeAfter, Corrected, Diagnosis, Improvement, Judged,
     JudgedNoise, LawParameters, Mismatch, ParameterSummary, Pictured, Rest,
-    Rival, Verdict,
+    Rival, Variant, Verdict,
 };
 pub use hypothesis::Hypothesis;
 pub use locate::{CELLS, FreeForce, locate};

@@ -6,7 +6,7 @@ use std::f64::consts::LN_10;
 use crate::diagnosis::evidence::attribute::Attribution;
 use crate::diagnosis::evidence::fit::Fit;
 use crate::diagnosis::evidence::table::Row;
-use crate::diagnosis::findings::{Judged, ParameterSummary, Verdict};
+use crate::diagnosis::findings::{Judged, ParameterSummary, Variant, Verdict};
 use crate::diagnosis::hypothesis::{Hypothesis, NONE, UNKNOWN};
 use crate::diagnosis::locate::{FreeForce, NOUN, SAYS};
 use crate::draws::{log_sum_exp, summarise};
@@ -185,14 +185,18 @@ fn judged(
         }
         let logs: Vec<f64> =
             rows.iter().map(|row| row.candidates[i]).collect();
-        variants.push((mechanism.label(), log_mean(&logs)));
+        variants.push(Variant {
+            label: mechanism.label(),
+            coordinate: mechanism.coordinate(),
+            log_evidence: log_mean(&logs),
+        });
         let Some(fit) = most(&fits(i)) else { continue };
         if best.is_none_or(|(_, b)| fit.log_evidence > b.log_evidence) {
             best = Some((mechanism.as_ref(), fit));
         }
     }
     let Some((mechanism, fit)) = best else { return Judged::default() };
-    let logs: Vec<f64> = variants.iter().map(|(_, log)| *log).collect();
+    let logs: Vec<f64> = variants.iter().map(|v| v.log_evidence).collect();
     let parameters: Vec<ParameterSummary> = summarise(&fit.draws)
         .iter()
         .take(fit.added)

@@ -79,7 +79,9 @@ fn judged_json(m: &Judged) -> Value {
         value["form"] = json!(form);
     }
     if m.variants.len() > 1 {
-        let variants = m.variants.iter().map(|(k, v)| (k.clone(), json!(v)));
+        let variants = m.variants.iter();
+        let variants =
+            variants.map(|v| (v.label.clone(), json!(v.log_evidence)));
         value["variants"] = Value::Object(variants.collect::<Map<_, _>>());
     }
     value

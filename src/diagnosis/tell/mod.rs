@@ -2,6 +2,7 @@
 
 mod json;
 mod law;
+mod moment;
 pub(crate) mod noise;
 #[cfg(feature = "pages")]
 pub(crate) mod page;

@@ -1,6 +1,7 @@
 //! A diagnosis in sentences that a snow scientist can check.
 
 use crate::diagnosis::tell::law::law;
+use crate::diagnosis::tell::moment::place_or_moment;
 use crate::diagnosis::tell::noise::{is_other, noise};
 use crate::diagnosis::tell::phrases::{
     all_called, amounts, called, capital, event, friction, interval,
@@ -61,6 +62,7 @@ pub fn in_words(d: &Diagnosis) -> Vec<String> {
             said.push(residuals(&d.baseline));
         }
         said.extend(law(d));
+        said.extend(place_or_moment(d));
         said.extend(ambiguity(d));
     }
     said.extend(trap(d));
