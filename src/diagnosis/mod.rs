@@ -20,7 +20,8 @@ mod together;
 pub use crate::model::Together;
 pub use decide::judge::{Odds, judge, prior_probabilities};
 pub use diagnose::{diagnose, diagnose_together};
-pub use evidence::attribute::{Attribution, attribute, pair};
+pub use evidence::attribute::{Attribution, attribute};
+pub use evidence::combination::pair;
 pub use evidence::fit::{Fit, fit};
 pub use findings::{
     Baseline, BeforeAfter, Corrected, Diagnosis, Improvement, Judged,

@@ -15,9 +15,8 @@ use rayon::prelude::*;
 
 use crate::diagnosis::decide::chosen::Chosen;
 use crate::diagnosis::decide::judge::Beforehand;
-use crate::diagnosis::evidence::attribute::{
-    Attribution, Known, extend, pair,
-};
+use crate::diagnosis::evidence::attribute::Attribution;
+use crate::diagnosis::evidence::combination::{Combination, Known};
 use crate::diagnosis::evidence::fit::Fit;
 use crate::error::Result;
 use crate::mechanism::Mechanism;
@@ -29,6 +28,8 @@ use crate::seed::Seed;
 pub(crate) const RISE: f64 = 1.0;
 /// The most terms.
 const MOST: usize = 3;
+/// How many that promise most are fitted before the rest is held against them.
+const AT_ONCE: usize = 4;
 
 /// A search for the terms that are worth most together.
 pub(crate) struct Stepwise<'a, P> {
@@ -57,7 +58,27 @@ impl Step {
     }
 }
 
-impl<P: Program> Stepwise<'_, P> {
+/// Terms after a quick look at them.
+struct Look<'a> {
+    which: Vec<usize>,
+    /// What they cost, in ln.
+    price: f64,
+    terms: Combination<'a>,
+}
+
+impl Look<'_> {
+    /// About what they are worth.
+    fn promise(&self) -> f64 {
+        self.terms.log - self.price
+    }
+
+    /// The most that they may be worth.
+    fn most(&self) -> f64 {
+        self.terms.most - self.price
+    }
+}
+
+impl<'a, P: Program> Stepwise<'a, P> {
     /// The terms that are worth most, from a first one on.
     ///
     /// # Errors
@@ -70,9 +91,7 @@ impl<P: Program> Stepwise<'_, P> {
         loop {
             let mut steps = self.steps(&best);
             steps.retain(|step| tried.insert(sorted(step.terms(&best.which))));
-            let fits = steps.par_iter().map(|step| self.fit(&best, step));
-            let found = fits.collect::<Result<Vec<_>>>()?.into_iter();
-            others.extend(found.flatten());
+            others.extend(self.fits(&best, &steps)?);
             let Some(next) = self.better(&others, &best) else { break };
             let next = others.swap_remove(next);
             others.push(std::mem::replace(&mut best, next));
@@ -87,47 +106,68 @@ impl<P: Program> Stepwise<'_, P> {
         steps(&chosen.which, &self.candidates, &names)
     }
 
-    /// The fit that a step leads to, where it promises to be worth as much as
-    /// what was chosen, or nearly so with as many terms.
-    fn fit(&self, chosen: &Chosen, step: &Step) -> Result<Option<Chosen>> {
-        let which = step.terms(&chosen.which);
-        let near = if which.len() == chosen.which.len() { RISE } else { 0.0 };
-        let hurdle = self.worth_of(&chosen.which, &chosen.fit) - near * LN_10
-            + self.price(&which);
-        let number = which.iter().fold(0, |n, &i| n * 1000 + i as u64 + 1);
-        let seed = self.seed.child(1000 + number);
-        let fit = match (&which[..], step.added) {
-            (&[a, b], _) => self.pair([a, b], hurdle, seed)?,
-            (_, Some(added)) => {
-                self.extended(chosen, &step.kept, added, hurdle, seed)?
+    /// The fits that steps lead to, where these may be worth more than the
+    /// chosen and than each other, or nearly so: all are looked at, those that
+    /// promise most are fitted first.
+    fn fits(&self, chosen: &Chosen, steps: &[Step]) -> Result<Vec<Chosen>> {
+        let looks = steps.par_iter().map(|step| self.look(chosen, step));
+        let mut left = looks.collect::<Result<Vec<Look<'_>>>>()?;
+        left.sort_by(|a, b| b.promise().total_cmp(&a.promise()));
+        let mut least = self.worth_of(&chosen.which, &chosen.fit);
+        let near = RISE * LN_10;
+        let mut found: Vec<Chosen> = Vec::new();
+        loop {
+            let terms = chosen.which.len();
+            left.retain(|look| {
+                let alike = look.which.len() == terms;
+                look.most() > if alike { least - near } else { least }
+            });
+            if left.is_empty() {
+                return Ok(found);
             }
-            _ => None,
-        };
-        Ok(fit.map(|fit| Chosen::new(which, fit)))
+            let rest = left.split_off(left.len().min(AT_ONCE));
+            let fits = left.par_iter().map(|look| {
+                let hurdle = least - near + look.price;
+                let fit = look.terms.fit(self.program, hurdle)?;
+                Ok(fit.map(|fit| Chosen::new(look.which.clone(), fit)))
+            });
+            let fits = fits.collect::<Result<Vec<_>>>()?;
+            for one in fits.into_iter().flatten() {
+                least = least.max(self.worth_of(&one.which, &one.fit));
+                found.push(one);
+            }
+            left = rest;
+        }
     }
 
-    fn pair(
-        &self,
-        which: [usize; 2],
-        hurdle: f64,
-        seed: Seed,
-    ) -> Result<Option<Fit>> {
+    fn look(&self, chosen: &Chosen, step: &Step) -> Result<Look<'a>> {
+        let which = step.terms(&chosen.which);
+        let number = which.iter().fold(0, |n, &i| n * 1000 + i as u64 + 1);
+        let seed = self.seed.child(1000 + number);
+        let terms = match &which[..] {
+            &[a, b] => self.pair([a, b], seed)?,
+            _ => self.extended(chosen, step, seed)?,
+        };
+        Ok(Look { price: self.price(&which), which, terms })
+    }
+
+    fn pair(&self, which: [usize; 2], seed: Seed) -> Result<Combination<'a>> {
         let mechanisms = which.map(|i| self.all[i].as_ref());
         let fits = which.map(|i| &self.found.candidates[i]);
-        pair(self.program, mechanisms, fits, hurdle, seed)
+        Combination::pair(self.program, mechanisms, fits, seed)
     }
 
     /// One term more beside some of the chosen.
     fn extended(
         &self,
         chosen: &Chosen,
-        kept: &[usize],
-        added: usize,
-        hurdle: f64,
+        step: &Step,
         seed: Seed,
-    ) -> Result<Option<Fit>> {
+    ) -> Result<Combination<'a>> {
+        let which = step.terms(&chosen.which);
         let columns = chosen.columns(self.all);
-        let kept: Vec<_> = kept.iter().map(|&k| columns[k].clone()).collect();
+        let kept: Vec<_> =
+            step.kept.iter().map(|&k| columns[k].clone()).collect();
         let place = chosen.fit.mechanism();
         let parameters: Vec<f64> = kept
             .iter()
@@ -140,8 +180,9 @@ impl<P: Program> Stepwise<'_, P> {
             added: &parameters,
             own: chosen.fit.own(),
         };
+        let added = which[which.len() - 1];
         let added = (self.all[added].as_ref(), &self.found.candidates[added]);
-        extend(self.program, &known, added, hurdle, seed)
+        Combination::extended(self.program, &known, added, seed)
     }
 
     /// Which of others is worth most, where that is more than what was chosen

@@ -291,7 +291,7 @@ fn tails(mut drawn: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
 
 /// How sharply what has such a prospect is worth estimating, if evidences
 /// below a threshold do not matter.
-fn precision(prospect: &Prospect, threshold: f64) -> Precision {
+pub(super) fn precision(prospect: &Prospect, threshold: f64) -> Precision {
     match prospect.may_reach(threshold) {
         true => Precision::Sharp,
         false => Precision::Rough,
@@ -325,7 +325,7 @@ fn single<P: Program>(
 /// Where a mechanism is looked for, all other coordinates beginning at those
 /// before and after it: anywhere in its prior, along its grids, and at the
 /// best place that is known of it.
-fn around(
+pub(super) fn around(
     posterior: &Posterior<'_>,
     mechanism: &dyn Mechanism,
     known: Option<&[f64]>,
@@ -342,97 +342,4 @@ fn around(
     let starts = known.into_iter().chain(places).map(joined).collect();
     grids.extend(even_grids(mechanism, before, after, seed.child(1)));
     Ok(SearchSpace { prior_starts: 0, starts, grids })
-}
-
-/// A model whose mechanisms are known, with where it is best on the line.
-pub(crate) struct Known<'a> {
-    pub(crate) mechanisms: &'a [&'a dyn Mechanism],
-    /// Their parameters.
-    pub(crate) added: &'a [f64],
-    /// The model's own parameters.
-    pub(crate) own: &'a [f64],
-}
-
-/// Fits a pair: from the best of either, with the other anywhere; `None`
-/// where it does not promise an evidence of about the hurdle.
-///
-/// # Errors
-/// As [`attribute`].
-pub fn pair<P: Program>(
-    program: &P,
-    mechanisms: [&dyn Mechanism; 2],
-    fits: [&Fit; 2],
-    hurdle: f64,
-    seed: Seed,
-) -> Result<Option<Fit>> {
-    let ([a, b], [of_a, of_b]) = (mechanisms, fits);
-    let with = With::new(program, &mechanisms);
-    let posterior = Posterior::new(&with)?;
-    let (mut space, more) = (
-        around(
-            &posterior,
-            b,
-            Some(of_b.mechanism()),
-            of_a.mechanism(),
-            of_a.own(),
-            seed.child(0),
-        )?,
-        around(
-            &posterior,
-            a,
-            Some(of_a.mechanism()),
-            &[],
-            &[of_b.mechanism(), of_b.own()].concat(),
-            seed.child(1),
-        )?,
-    );
-    space.extend(more);
-    fit_if_worth(program, &mechanisms, space, hurdle, seed.child(9))
-}
-
-/// Fits one mechanism more, from the best of those that are known.
-pub(crate) fn extend<P: Program>(
-    program: &P,
-    known: &Known<'_>,
-    (added, fit): (&dyn Mechanism, &Fit),
-    hurdle: f64,
-    seed: Seed,
-) -> Result<Option<Fit>> {
-    let best = Some(fit.mechanism());
-    let mut mechanisms = known.mechanisms.to_vec();
-    mechanisms.push(added);
-    let with = With::new(program, &mechanisms);
-    let posterior = Posterior::new(&with)?;
-    let Known { added: before, own, .. } = *known;
-    let seed_of = seed.child(0);
-    let space = around(&posterior, added, best, before, own, seed_of)?;
-    fit_if_worth(program, &mechanisms, space, hurdle, seed.child(9))
-}
-
-/// How far, in ln, what a search promises may fall short of an evidence.
-const SHORT: f64 = 1.0;
-
-/// Fits mechanisms only where they promise an evidence of about the hurdle:
-/// most combinations are far below it.
-fn fit_if_worth<P: Program>(
-    program: &P,
-    mechanisms: &[&dyn Mechanism],
-    space: SearchSpace,
-    hurdle: f64,
-    seed: Seed,
-) -> Result<Option<Fit>> {
-    let backend = LaplaceMixture::within(space);
-    let least = hurdle - SHORT;
-    let quick = prospect(program, mechanisms, backend.quick(), seed.child(0))?;
-    if !quick.may_reach(least) {
-        return Ok(None);
-    }
-    let looked = prospect(program, mechanisms, backend, seed.child(3))?;
-    let found = looked.pursued(program, mechanisms, least, seed.child(2))?;
-    match precision(&found, least) {
-        Precision::Rough => Ok(None),
-        sharp => {
-            found.fit(program, mechanisms, sharp, seed.child(1)).map(Some)
-        }
-    }
 }

@@ -60,12 +60,17 @@ impl Prospect {
 
     /// Whether what it holds may be above a threshold, in ln.
     pub(crate) fn may_reach(&self, threshold: f64) -> bool {
+        self.most() > threshold
+    }
+
+    /// The most, in ln, that it may hold.
+    pub(crate) fn most(&self) -> f64 {
         let unseen = match &self.frozen {
             Some(frozen) if frozen.good => SETTLED,
             Some(frozen) if frozen.round > FEW_ROUNDS => OPEN,
             _ => UNSEEN,
         };
-        self.log + unseen > threshold
+        self.log + unseen
     }
 
     /// After learning more, as long as it may reach a threshold.

@@ -1,0 +1,150 @@
+//! Several mechanisms together, looked at quickly before they are fitted.
+
+use super::attribute::{around, precision};
+use super::fit::{Fit, prospect};
+use crate::error::Result;
+use crate::infer::{LaplaceMixture, Precision, SearchSpace};
+use crate::mechanism::Mechanism;
+use crate::model::{Posterior, Program, With};
+use crate::seed::Seed;
+
+/// A model whose mechanisms are known, with where it is best on the line.
+pub(crate) struct Known<'k, 'a> {
+    pub(crate) mechanisms: &'k [&'a dyn Mechanism],
+    /// Their parameters.
+    pub(crate) added: &'k [f64],
+    /// The model's own parameters.
+    pub(crate) own: &'k [f64],
+}
+
+/// Mechanisms together after a quick look at them.
+pub(crate) struct Combination<'a> {
+    mechanisms: Vec<&'a dyn Mechanism>,
+    /// Where they are looked for.
+    space: SearchSpace,
+    /// About ln of their evidence, and the most that it may be.
+    pub(crate) log: f64,
+    pub(crate) most: f64,
+    seed: Seed,
+}
+
+/// From how many starts a quick look climbs.
+const STARTS: usize = 6;
+/// How far, in ln, what a search promises may fall short of an evidence.
+const SHORT: f64 = 1.0;
+
+impl<'a> Combination<'a> {
+    /// A pair: from the best of either, with the other anywhere.
+    ///
+    /// # Errors
+    /// An improper prior, or a model that fails.
+    pub(crate) fn pair<P: Program>(
+        program: &P,
+        mechanisms: [&'a dyn Mechanism; 2],
+        fits: [&Fit; 2],
+        seed: Seed,
+    ) -> Result<Self> {
+        let ([a, b], [of_a, of_b]) = (mechanisms, fits);
+        let with = With::new(program, &mechanisms);
+        let posterior = Posterior::new(&with)?;
+        let (mut space, mut more) = (
+            around(
+                &posterior,
+                b,
+                Some(of_b.mechanism()),
+                of_a.mechanism(),
+                of_a.own(),
+                seed.child(0),
+            )?,
+            around(
+                &posterior,
+                a,
+                Some(of_a.mechanism()),
+                &[],
+                &[of_b.mechanism(), of_b.own()].concat(),
+                seed.child(1),
+            )?,
+        );
+        // The best known places first.
+        space.starts.insert(1, more.starts.remove(0));
+        space.extend(more);
+        Self::looked(program, mechanisms.to_vec(), space, seed.child(9))
+    }
+
+    /// One mechanism more, from the best of those that are known.
+    ///
+    /// # Errors
+    /// As [`Combination::pair`].
+    pub(crate) fn extended<P: Program>(
+        program: &P,
+        known: &Known<'_, 'a>,
+        (added, fit): (&'a dyn Mechanism, &Fit),
+        seed: Seed,
+    ) -> Result<Self> {
+        let best = Some(fit.mechanism());
+        let mut mechanisms = known.mechanisms.to_vec();
+        mechanisms.push(added);
+        let with = With::new(program, &mechanisms);
+        let posterior = Posterior::new(&with)?;
+        let Known { added: before, own, .. } = *known;
+        let seed_of = seed.child(0);
+        let space = around(&posterior, added, best, before, own, seed_of)?;
+        Self::looked(program, mechanisms, space, seed.child(9))
+    }
+
+    fn looked<P: Program>(
+        program: &P,
+        mechanisms: Vec<&'a dyn Mechanism>,
+        space: SearchSpace,
+        seed: Seed,
+    ) -> Result<Self> {
+        let mut few = space.clone();
+        few.starts.truncate(STARTS);
+        let quick = LaplaceMixture::within(few).quick();
+        let quick = prospect(program, &mechanisms, quick, seed.child(0))?;
+        let (log, most) = (quick.log(), quick.most());
+        Ok(Self { mechanisms, space, log, most, seed })
+    }
+
+    /// Their fit; `None` where they do not promise an evidence of about the
+    /// hurdle.
+    ///
+    /// # Errors
+    /// A model that fails.
+    pub(crate) fn fit<P: Program>(
+        &self,
+        program: &P,
+        hurdle: f64,
+    ) -> Result<Option<Fit>> {
+        let least = hurdle - SHORT;
+        if self.most <= least {
+            return Ok(None);
+        }
+        let (mechanisms, seed) = (&self.mechanisms[..], self.seed);
+        let backend = LaplaceMixture::within(self.space.clone());
+        let looked = prospect(program, mechanisms, backend, seed.child(3))?;
+        let found =
+            looked.pursued(program, mechanisms, least, seed.child(2))?;
+        match precision(&found, least) {
+            Precision::Rough => Ok(None),
+            sharp => {
+                found.fit(program, mechanisms, sharp, seed.child(1)).map(Some)
+            }
+        }
+    }
+}
+
+/// Fits a pair: from the best of either, with the other anywhere; `None`
+/// where it does not promise an evidence of about the hurdle.
+///
+/// # Errors
+/// As [`attribute`](super::attribute::attribute).
+pub fn pair<P: Program>(
+    program: &P,
+    mechanisms: [&dyn Mechanism; 2],
+    fits: [&Fit; 2],
+    hurdle: f64,
+    seed: Seed,
+) -> Result<Option<Fit>> {
+    Combination::pair(program, mechanisms, fits, seed)?.fit(program, hurdle)
+}
