@@ -20,13 +20,19 @@ use crate::seed::Seed;
 pub(crate) enum Precision {
     /// As the schedule asks.
     Sharp,
+    /// As sharp as a moderate number of draws makes it, of what has a share in
+    /// an answer but does not decide it.
+    Fair,
     /// A few draws, of what is so far below the best that no answer depends
     /// on it.
     Rough,
 }
 
-/// Draws of a rough estimate.
+/// Draws of a rough estimate, and the most of a fair one.
 const ROUGH: usize = 300;
+const FAIR: usize = 3000;
+/// The largest standard error of ln evidence that a fair estimate may have.
+const FAIR_ERROR: f64 = 0.3;
 
 /// How many draws make an estimate as sharp as asked: the relative variance of
 /// a mean of n weights is their own over n.
@@ -34,9 +40,23 @@ fn count(frozen: &Frozen, schedule: &Schedule, precision: Precision) -> usize {
     let (fewest, most) = schedule.final_draws;
     match precision {
         Precision::Rough => ROUGH,
-        Precision::Sharp => {
-            let needed = frozen.excess / schedule.error.powi(2);
-            (needed as usize).clamp(fewest, most)
+        Precision::Fair => needed(frozen, schedule).clamp(fewest, FAIR),
+        Precision::Sharp => needed(frozen, schedule).clamp(fewest, most),
+    }
+}
+
+fn needed(frozen: &Frozen, schedule: &Schedule) -> usize {
+    (frozen.excess / schedule.error.powi(2)) as usize
+}
+
+impl Estimate {
+    /// Whether it is as good as asked for.
+    pub(super) fn suits(&self, precision: Precision) -> bool {
+        let se = self.made.evidence.as_ref().map_or(f64::NAN, |e| e.se);
+        match precision {
+            Precision::Rough => true,
+            Precision::Fair => self.does || se < FAIR_ERROR,
+            Precision::Sharp => self.does,
         }
     }
 }

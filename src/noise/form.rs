@@ -53,22 +53,25 @@ impl Form {
     /// Whether it is the same noise as another, or one that makes no other
     /// errors: AR(1) is the Ornstein-Uhlenbeck process seen at even times.
     pub fn is_like(&self, other: &Self) -> bool {
-        fn blocks(form: &Form) -> Vec<&str> {
-            let all = form.memory.split(" + ");
-            let name = |block| if block == "ar(1)" { "ou" } else { block };
-            let mut all: Vec<&str> = all.map(name).collect();
-            all.sort_unstable();
-            all
-        }
-        blocks(self) == blocks(other)
+        self.blocks() == other.blocks()
             && self.has_tails == other.has_tails
             && self.grows == other.grows
     }
 
-    /// Whether it has no shape that another one of the same memory lacks.
+    /// What its memory is a sum of.
+    fn blocks(&self) -> Vec<&str> {
+        let all = self.memory.split(" + ");
+        let name = |block| if block == "ar(1)" { "ou" } else { block };
+        let mut all: Vec<&str> = all.map(name).collect();
+        all.sort_unstable();
+        all
+    }
+
+    /// Whether it has nothing that another one lacks, and less.
     #[must_use]
     pub fn is_simpler_than(&self, other: &Self) -> bool {
-        self.plain().is_like(&other.plain())
+        let blocks = other.blocks();
+        self.blocks().iter().all(|block| blocks.contains(block))
             && !self.is_like(other)
             && self.has_tails <= other.has_tails
             && self.grows <= other.grows
@@ -105,6 +108,8 @@ mod tests {
         let simpler =
             |a: &str, b: &str| Form::of(a).is_simpler_than(&Form::of(b));
         assert!(simpler("iid", "white + tails"));
+        assert!(simpler("ar(1) + tails", "matern32 + ou + tails"));
+        assert!(!simpler("ou + white", "matern32 + ou"));
         assert!(!simpler("white + tails + growth", "white + growth"));
         assert!(!simpler("white + tails", "white + growth"));
         assert!(!like("iid", "white + growth"));

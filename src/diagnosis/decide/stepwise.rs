@@ -16,9 +16,10 @@ use rayon::prelude::*;
 use crate::diagnosis::decide::chosen::Chosen;
 use crate::diagnosis::decide::judge::Beforehand;
 use crate::diagnosis::evidence::attribute::Attribution;
-use crate::diagnosis::evidence::combination::{Combination, Known};
+use crate::diagnosis::evidence::combination::{Combination, Known, Pursued};
 use crate::diagnosis::evidence::fit::Fit;
 use crate::error::Result;
+use crate::infer::Precision;
 use crate::mechanism::Mechanism;
 use crate::model::Program;
 use crate::seed::Seed;
@@ -58,6 +59,13 @@ impl Step {
     }
 }
 
+/// Terms with their fit, and what a thorough search found of them, for a
+/// sharper one.
+struct Tried<'a> {
+    chosen: Chosen,
+    found: Option<Pursued<'a>>,
+}
+
 /// Terms after a quick look at them.
 struct Look<'a> {
     which: Vec<usize>,
@@ -85,19 +93,27 @@ impl<'a, P: Program> Stepwise<'a, P> {
     /// A model that fails.
     pub(crate) fn from(&self, first: usize) -> Result<Chosen> {
         let fit = self.found.candidates[first].clone();
-        let mut best = Chosen::new(vec![first], fit);
+        let single = Chosen::new(vec![first], fit);
+        let mut best = Tried { chosen: single, found: None };
         let mut tried = BTreeSet::new();
-        let mut others: Vec<Chosen> = Vec::new();
+        let mut others: Vec<Tried<'_>> = Vec::new();
         loop {
-            let mut steps = self.steps(&best);
-            steps.retain(|step| tried.insert(sorted(step.terms(&best.which))));
-            others.extend(self.fits(&best, &steps)?);
-            let Some(next) = self.better(&others, &best) else { break };
+            let chosen = &best.chosen;
+            let mut steps = self.steps(chosen);
+            steps.retain(|step| {
+                tried.insert(sorted(step.terms(&chosen.which)))
+            });
+            others.extend(self.fits(chosen, &steps)?);
+            let Some(next) = self.better(&others, chosen) else { break };
             let next = others.swap_remove(next);
             others.push(std::mem::replace(&mut best, next));
         }
-        best.rivals = self.rivals(&best, others);
-        Ok(best)
+        let Tried { mut chosen, found } = best;
+        if let Some(found) = found {
+            chosen.fit = found.fit(self.program, Precision::Sharp)?;
+        }
+        chosen.rivals = self.rivals(&chosen, others);
+        Ok(chosen)
     }
 
     /// All sets that differ from the chosen by one term.
@@ -109,13 +125,13 @@ impl<'a, P: Program> Stepwise<'a, P> {
     /// The fits that steps lead to, where these may be worth more than the
     /// chosen and than each other, or nearly so: all are looked at, those that
     /// promise most are fitted first.
-    fn fits(&self, chosen: &Chosen, steps: &[Step]) -> Result<Vec<Chosen>> {
+    fn fits(&self, chosen: &Chosen, steps: &[Step]) -> Result<Vec<Tried<'a>>> {
         let looks = steps.par_iter().map(|step| self.look(chosen, step));
         let mut left = looks.collect::<Result<Vec<Look<'_>>>>()?;
         left.sort_by(|a, b| b.promise().total_cmp(&a.promise()));
         let mut least = self.worth_of(&chosen.which, &chosen.fit);
         let near = RISE * LN_10;
-        let mut found: Vec<Chosen> = Vec::new();
+        let mut found: Vec<Tried<'a>> = Vec::new();
         loop {
             let terms = chosen.which.len();
             left.retain(|look| {
@@ -126,18 +142,27 @@ impl<'a, P: Program> Stepwise<'a, P> {
                 return Ok(found);
             }
             let rest = left.split_off(left.len().min(AT_ONCE));
-            let fits = left.par_iter().map(|look| {
-                let hurdle = least - near + look.price;
-                let fit = look.terms.fit(self.program, hurdle)?;
-                Ok(fit.map(|fit| Chosen::new(look.which.clone(), fit)))
-            });
+            let hurdle = least - near;
+            let fits = left.into_par_iter().map(|l| self.tried(l, hurdle));
             let fits = fits.collect::<Result<Vec<_>>>()?;
             for one in fits.into_iter().flatten() {
-                least = least.max(self.worth_of(&one.which, &one.fit));
+                let Chosen { which, fit, .. } = &one.chosen;
+                least = least.max(self.worth_of(which, fit));
                 found.push(one);
             }
             left = rest;
         }
+    }
+
+    /// The fit of terms that may be worth so much.
+    fn tried(&self, look: Look<'a>, hurdle: f64) -> Result<Option<Tried<'a>>> {
+        let Look { which, price, terms } = look;
+        let Some(found) = terms.pursued(self.program, hurdle + price)? else {
+            return Ok(None);
+        };
+        let fit = found.fit(self.program, Precision::Fair)?;
+        let chosen = Chosen::new(which, fit);
+        Ok(Some(Tried { chosen, found: Some(found) }))
     }
 
     fn look(&self, chosen: &Chosen, step: &Step) -> Result<Look<'a>> {
@@ -187,22 +212,25 @@ impl<'a, P: Program> Stepwise<'a, P> {
 
     /// Which of others is worth most, where that is more than what was chosen
     /// is worth by more than their errors.
-    fn better(&self, others: &[Chosen], chosen: &Chosen) -> Option<usize> {
+    fn better(&self, others: &[Tried<'_>], chosen: &Chosen) -> Option<usize> {
         let worth = |c: &Chosen| self.worth_of(&c.which, &c.fit);
+        let others: Vec<&Chosen> = others.iter().map(|o| &o.chosen).collect();
         let most = |a: &usize, b: &usize| {
-            worth(&others[*a]).total_cmp(&worth(&others[*b]))
+            worth(others[*a]).total_cmp(&worth(others[*b]))
         };
         let best = (0..others.len()).max_by(most)?;
         let error = others[best].fit.se.hypot(chosen.fit.se);
-        (worth(&others[best]) > worth(chosen) + error).then_some(best)
+        (worth(others[best]) > worth(chosen) + error).then_some(best)
     }
 
     /// Those of as many terms that are worth nearly as much, most first.
     fn rivals(
         &self,
         chosen: &Chosen,
-        mut others: Vec<Chosen>,
+        others: Vec<Tried<'_>>,
     ) -> Vec<(Vec<usize>, f64)> {
+        let others = others.into_iter().map(|other| other.chosen);
+        let mut others: Vec<Chosen> = others.collect();
         let worth = |c: &Chosen| self.worth_of(&c.which, &c.fit);
         let near = worth(chosen) - RISE * LN_10;
         others.retain(|other| {

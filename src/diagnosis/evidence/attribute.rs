@@ -47,9 +47,24 @@ fn climbs(unknowns: usize) -> usize {
 /// How many climbs of a single mechanism start from draws of the whole prior.
 const PRIOR_STARTS: usize = 4;
 
-/// What is so far below the best, in ln, is estimated roughly: it has less
-/// than a hundred-thousandth of the probability.
-const IRRELEVANT: f64 = 10.5;
+/// How far below the best, in ln, evidences still matter.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Care {
+    /// What is farther below is estimated roughly.
+    relevant: f64,
+    /// What is nearer is estimated sharply.
+    decisive: f64,
+}
+
+impl Care {
+    /// Where evidences are asked for themselves: below, each has less than a
+    /// hundred-thousandth of the probability.
+    const THOROUGH: Self = Self { relevant: 10.5, decisive: 10.5 };
+    /// Where a decision hangs on them: nothing below a thousandth of the
+    /// probability is told, and what has less than a fiftieth neither leads
+    /// nor joins the group, which ends at a tenth.
+    pub(crate) const DECIDING: Self = Self { relevant: 7.0, decisive: 4.0 };
+}
 
 /// Fits the model as it is, with a free-form force, and with each mechanism;
 /// sharply where it matters. Without an extent no free-form force is weighed.
@@ -64,7 +79,8 @@ pub fn attribute<P: Program>(
     progress: &dyn Progress,
 ) -> Result<Attribution> {
     let none = fit(program, &[], &LaplaceMixture::default(), seed.child(0))?;
-    attribute_beside(program, none, extent, catalogue, seed, progress)
+    let care = Care::THOROUGH;
+    attribute_beside(program, none, extent, catalogue, care, seed, progress)
 }
 
 /// The same beside the fit of the model as it is.
@@ -76,6 +92,7 @@ pub(crate) fn attribute_beside<P: Program>(
     none: Fit,
     extent: Option<&Extent>,
     catalogue: &[Box<dyn Mechanism>],
+    care: Care,
     seed: Seed,
     progress: &dyn Progress,
 ) -> Result<Attribution> {
@@ -87,7 +104,7 @@ pub(crate) fn attribute_beside<P: Program>(
     };
     let owns = Owns::of(program, &none, &forces)?;
     progress.begin("weighing mechanisms", Some(catalogue.len() as u64));
-    let weighing = Weighing { program, catalogue, seed };
+    let weighing = Weighing { program, catalogue, care, seed };
     let candidates =
         weighing.weighed(none.log_evidence, progress, |mechanism, seed| {
             single(program, mechanism, &owns, seed)
@@ -162,6 +179,7 @@ fn carried(
 struct Weighing<'a, P> {
     program: &'a P,
     catalogue: &'a [Box<dyn Mechanism>],
+    care: Care,
     seed: Seed,
 }
 
@@ -207,7 +225,7 @@ impl<P: Program> Weighing<'_, P> {
         prospects: Vec<Prospect>,
         known: f64,
     ) -> Result<Vec<Prospect>> {
-        let threshold = threshold(&prospects, known);
+        let threshold = highest(&prospects, known) - self.care.relevant;
         let all = self.catalogue.par_iter().enumerate().zip(prospects);
         all.map(|((i, mechanism), prospect)| {
             let seed = self.seed_of(i).child(3);
@@ -217,18 +235,30 @@ impl<P: Program> Weighing<'_, P> {
         .collect()
     }
 
+    /// How sharply what has such a prospect is worth estimating beside the
+    /// best.
+    fn precision(&self, prospect: &Prospect, best: f64) -> Precision {
+        if prospect.may_reach(best - self.care.decisive) {
+            Precision::Sharp
+        } else if prospect.may_reach(best - self.care.relevant) {
+            Precision::Fair
+        } else {
+            Precision::Rough
+        }
+    }
+
     /// Their fits, sharp where they may matter.
     fn fitted(
         &self,
         prospects: Vec<Prospect>,
         known: f64,
     ) -> Result<Vec<Fit>> {
-        let threshold = threshold(&prospects, known);
+        let best = highest(&prospects, known);
         let all = self.catalogue.par_iter().enumerate().zip(prospects);
         all.map(|((i, mechanism), prospect)| {
             let (mechanisms, seed) =
                 ([mechanism.as_ref()], self.seed_of(i).child(2));
-            let precision = precision(&prospect, threshold);
+            let precision = self.precision(&prospect, best);
             prospect
                 .fit(self.program, &mechanisms, precision, seed)
                 .map_err(|error| error.within(mechanism.name()))
@@ -237,10 +267,9 @@ impl<P: Program> Weighing<'_, P> {
     }
 }
 
-/// The evidence, in ln, below which none matters.
-fn threshold(prospects: &[Prospect], known: f64) -> f64 {
-    let logs = prospects.iter().map(Prospect::log);
-    logs.fold(known, f64::max) - IRRELEVANT
+/// The most evidence, in ln, that any promises or that is known.
+fn highest(prospects: &[Prospect], known: f64) -> f64 {
+    prospects.iter().map(Prospect::log).fold(known, f64::max)
 }
 
 /// Where the model's own parameters begin.
@@ -287,15 +316,6 @@ fn tails(mut drawn: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
             [drawn[low].clone(), drawn[high].clone()]
         })
         .collect()
-}
-
-/// How sharply what has such a prospect is worth estimating, if evidences
-/// below a threshold do not matter.
-pub(super) fn precision(prospect: &Prospect, threshold: f64) -> Precision {
-    match prospect.may_reach(threshold) {
-        true => Precision::Sharp,
-        false => Precision::Rough,
-    }
 }
 
 /// Looks at a single mechanism, with the model's own parameters beginning at

@@ -1,7 +1,7 @@
 //! Several mechanisms together, looked at quickly before they are fitted.
 
-use super::attribute::{around, precision};
-use super::fit::{Fit, prospect};
+use super::attribute::around;
+use super::fit::{Fit, Prospect, prospect};
 use crate::error::Result;
 use crate::infer::{LaplaceMixture, Precision, SearchSpace};
 use crate::mechanism::Mechanism;
@@ -106,16 +106,16 @@ impl<'a> Combination<'a> {
         Ok(Self { mechanisms, space, log, most, seed })
     }
 
-    /// Their fit; `None` where they do not promise an evidence of about the
-    /// hurdle.
+    /// What a thorough search finds; `None` where they do not promise an
+    /// evidence of about the hurdle.
     ///
     /// # Errors
     /// A model that fails.
-    pub(crate) fn fit<P: Program>(
-        &self,
+    pub(crate) fn pursued<P: Program>(
+        self,
         program: &P,
         hurdle: f64,
-    ) -> Result<Option<Fit>> {
+    ) -> Result<Option<Pursued<'a>>> {
         let least = hurdle - SHORT;
         if self.most <= least {
             return Ok(None);
@@ -123,14 +123,35 @@ impl<'a> Combination<'a> {
         let (mechanisms, seed) = (&self.mechanisms[..], self.seed);
         let backend = LaplaceMixture::within(self.space.clone());
         let looked = prospect(program, mechanisms, backend, seed.child(3))?;
-        let found =
+        let prospect =
             looked.pursued(program, mechanisms, least, seed.child(2))?;
-        match precision(&found, least) {
-            Precision::Rough => Ok(None),
-            sharp => {
-                found.fit(program, mechanisms, sharp, seed.child(1)).map(Some)
-            }
+        if !prospect.may_reach(least) {
+            return Ok(None);
         }
+        let mechanisms = self.mechanisms;
+        Ok(Some(Pursued { mechanisms, prospect, seed: seed.child(1) }))
+    }
+}
+
+/// Mechanisms together after a thorough search.
+pub(crate) struct Pursued<'a> {
+    mechanisms: Vec<&'a dyn Mechanism>,
+    prospect: Prospect,
+    seed: Seed,
+}
+
+impl Pursued<'_> {
+    /// Their fit.
+    ///
+    /// # Errors
+    /// A model that fails.
+    pub(crate) fn fit<P: Program>(
+        &self,
+        program: &P,
+        precision: Precision,
+    ) -> Result<Fit> {
+        let (mechanisms, seed) = (&self.mechanisms[..], self.seed);
+        self.prospect.fit(program, mechanisms, precision, seed)
     }
 }
 
@@ -146,5 +167,7 @@ pub fn pair<P: Program>(
     hurdle: f64,
     seed: Seed,
 ) -> Result<Option<Fit>> {
-    Combination::pair(program, mechanisms, fits, seed)?.fit(program, hurdle)
+    let pair = Combination::pair(program, mechanisms, fits, seed)?;
+    let found = pair.pursued(program, hurdle)?;
+    found.map(|found| found.fit(program, Precision::Sharp)).transpose()
 }

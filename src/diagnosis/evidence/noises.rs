@@ -28,6 +28,8 @@ const MEMORIES: [&str; 5] =
     ["white", "ou", "ou + white", "matern32 + white", "matern32 + ou"];
 /// In log10: how far below the best a noise may be that is kept.
 const NEAR: f64 = 2.5;
+/// In ln: by how much a noise must have more evidence than simpler ones.
+const MORE: f64 = 1.0;
 /// From how many draws of the prior climbs start before it is known whether a
 /// noise is kept.
 const STARTS: usize = 8;
@@ -261,14 +263,14 @@ fn doubly_decorated<P: Program>(all: &[Weighed<'_, P>]) -> Vec<Form> {
     grow.map(|form| Form { has_tails: true, ..form }).collect()
 }
 
-/// Whether it has more evidence than each simpler noise of its memory, in
-/// either way.
+/// Whether it has more evidence than each simpler noise, in either way: one
+/// that does not says the same in more parameters.
 fn pays<P: Program>(one: &Weighed<'_, P>, all: &[Weighed<'_, P>]) -> bool {
     let form = one.form();
     let simpler =
         all.iter().filter(|other| other.form().is_simpler_than(&form));
     let ([without, with], logs) = (most(simpler), one.logs());
-    logs[0] > without || logs[1] > with
+    logs[0] > without + MORE || logs[1] > with + MORE
 }
 
 /// The most evidence of some noises, in ln, in either way.
@@ -286,6 +288,10 @@ fn kept<P: Program>(
     mut all: Vec<Weighed<'_, P>>,
     seed: Seed,
 ) -> Result<Noises<'_, P>> {
+    let pay: Vec<bool> =
+        all.iter().map(|o| o.program.is_named() || pays(o, &all)).collect();
+    let mut pay = pay.into_iter();
+    all.retain(|_| pay.next().unwrap_or(true));
     let near: Vec<String> = all
         .iter()
         .filter(|one| short(one, &all) < NEAR * LN_10)

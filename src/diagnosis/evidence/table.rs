@@ -1,6 +1,6 @@
 //! The two-way table: every mechanism under every noise that is kept.
 
-use super::attribute::{Attribution, attribute_beside, promises};
+use super::attribute::{Attribution, Care, attribute_beside, promises};
 use super::noises::{Noises, Noisy};
 use crate::error::{Error, Result};
 use crate::infer::Progress;
@@ -105,6 +105,7 @@ impl<'a, P: Program> Row<'a, P> {
             self.noisy.none.clone(),
             Some(extent),
             catalogue,
+            Care::DECIDING,
             seed,
             progress,
         )?;

@@ -12,7 +12,7 @@
 
 use crate::error::{Error, Result};
 use crate::infer::adapt::Frozen;
-use crate::infer::estimate::{Estimate, Precision, estimated};
+use crate::infer::estimate::{Precision, estimated};
 use crate::infer::proposal::{Component, Mixture};
 use crate::infer::schedule::Schedule;
 use crate::infer::search::{SearchSpace, components, outlook};
@@ -131,25 +131,25 @@ impl LaplaceMixture {
         progress.begin("importance sampling", None);
         let schedule = &self.schedule;
         let mut frozen = frozen.clone();
-        let rough = precision == Precision::Rough;
+        let sharp = precision == Precision::Sharp;
         for time in 0..schedule.estimates {
             let seed = seed.child(time);
-            if !(frozen.good || rough) {
+            if sharp && !frozen.good {
                 break;
             }
-            let Estimate { made, found, does } = estimated(
+            let estimate = estimated(
                 posterior,
                 &frozen,
                 schedule,
                 precision,
                 seed.child(0),
             )?;
-            if does || rough {
-                return Ok(made);
+            if estimate.suits(precision) {
+                return Ok(estimate.made);
             }
             frozen.good = false;
             frozen = frozen
-                .moved_on(posterior, &found, schedule, seed.child(1))?
+                .moved_on(posterior, &estimate.found, schedule, seed.child(1))?
                 .learned(
                     posterior,
                     schedule,
