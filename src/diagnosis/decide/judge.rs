@@ -177,25 +177,18 @@ fn judged(
         let found = rows.iter().filter_map(|row| row.found);
         found.map(|found| &found.candidates[i]).collect()
     };
-    let mut variants = Vec::new();
     let mut best: Option<(&dyn Candidate, &Fit)> = None;
     for (i, mechanism) in catalogue.iter().enumerate() {
         if mechanism.name() != name {
             continue;
         }
-        let logs: Vec<f64> =
-            rows.iter().map(|row| row.candidates[i]).collect();
-        variants.push(Variant {
-            label: mechanism.label(),
-            coordinate: mechanism.coordinate(),
-            log_evidence: log_mean(&logs),
-        });
         let Some(fit) = most(&fits(i)) else { continue };
         if best.is_none_or(|(_, b)| fit.log_evidence > b.log_evidence) {
             best = Some((mechanism.as_ref(), fit));
         }
     }
     let Some((mechanism, fit)) = best else { return Judged::default() };
+    let variants = variants(name, catalogue, rows);
     let logs: Vec<f64> = variants.iter().map(|v| v.log_evidence).collect();
     let parameters: Vec<ParameterSummary> = summarise(&fit.draws)
         .iter()
@@ -216,6 +209,26 @@ fn judged(
         variants,
         ..Judged::default()
     }
+}
+
+/// The variants of a name, the noises averaged.
+fn variants(
+    name: &str,
+    catalogue: &[Box<dyn Mechanism>],
+    rows: &[Seen<'_>],
+) -> Vec<Variant> {
+    let all = catalogue.iter().enumerate();
+    let own = all.filter(|(_, mechanism)| mechanism.name() == name);
+    own.map(|(i, mechanism)| {
+        let logs: Vec<f64> =
+            rows.iter().map(|row| row.candidates[i]).collect();
+        Variant {
+            label: mechanism.label(),
+            coordinate: mechanism.coordinate(),
+            log_evidence: log_mean(&logs),
+        }
+    })
+    .collect()
 }
 
 fn unknown(rows: &[Seen<'_>]) -> Option<Judged> {
