@@ -264,7 +264,8 @@ impl<P: Program> Subject<'_, P> {
             all,
             found: table.rows[row].found()?,
             open: table.rows[row].open,
-            judged: &own,
+            own: &own,
+            judged: &judged,
             beforehand,
             seed,
         };

@@ -27,6 +27,10 @@ pub struct Extent {
     pub averages: bool,
 }
 
+/// Of the upper quartile of the speeds, what a released mass starts with at
+/// the most: recordings begin at the first speed that a sensor tells from 0.
+const SLOW: f64 = 0.2;
+
 impl Extent {
     /// That of some event to which every mechanism applies.
     pub(crate) const EVERYTHING: Self = Self {
@@ -43,8 +47,16 @@ impl Extent {
         averages: true,
     };
 
+    /// Whether the mass is hardly under way at t = 0: one that slides already
+    /// was released before.
+    pub(crate) fn is_released(&self) -> bool {
+        self.start_speed < SLOW * self.speed
+    }
+
     /// The same of an event to which every mechanism applies.
     pub(crate) fn of_everything(&self) -> Self {
-        Self { carried: true, bends: true, averages: true, ..*self }
+        let start_speed = 0.0;
+        let everything = Self { start_speed, ..*self };
+        Self { carried: true, bends: true, averages: true, ..everything }
     }
 }

@@ -21,7 +21,9 @@ pub(crate) struct Choice<'a, P> {
     pub(crate) found: &'a Attribution,
     /// ln of the evidence with a force of free form, under the same noise.
     pub(crate) open: f64,
-    /// Their names, most probable first.
+    /// Their names, most probable first: under that noise, and whatever the
+    /// noise.
+    pub(crate) own: &'a [Judged],
     pub(crate) judged: &'a [Judged],
     pub(crate) beforehand: Beforehand<'a>,
     pub(crate) seed: Seed,
@@ -45,7 +47,7 @@ impl<P: Program> Choice<'_, P> {
             return Ok(None);
         }
         let candidates = self.best_variants();
-        let Some(&first) = candidates.first() else { return Ok(None) };
+        let Some(first) = self.first(&candidates) else { return Ok(None) };
         let stepwise = Stepwise {
             program: self.program,
             all: self.all,
@@ -101,6 +103,19 @@ impl<P: Program> Choice<'_, P> {
                 .filter(|&i| all[i].name() == m.name)
                 .max_by(|a, b| evidence(a).total_cmp(&evidence(b)))
         };
-        self.judged.iter().filter_map(variants).collect()
+        self.own.iter().filter_map(variants).collect()
+    }
+
+    /// Of those that do nearly as well as the best under this noise the most
+    /// probable whatever the noise, so that what is selected is what is told.
+    fn first(&self, candidates: &[usize]) -> Option<usize> {
+        let log = |i: usize| self.found.candidates[i].log_evidence;
+        let best = *candidates.first()?;
+        let near = |i: &usize| log(best) - log(*i) < RISE * LN_10;
+        let rank = |i: &usize| {
+            let name = self.all[*i].name();
+            self.judged.iter().position(|m| m.name == name)
+        };
+        candidates.iter().copied().filter(near).min_by_key(rank)
     }
 }

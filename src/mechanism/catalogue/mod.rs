@@ -80,8 +80,10 @@ fn built_in(extent: &Extent) -> Vec<Box<dyn Mechanism>> {
         Box::new(VelocityScale),
         Box::new(SensorDrift { extent }),
     ];
-    if extent.carried {
+    if extent.carried && extent.is_released() {
         all.push(Box::new(Spreading { extent }));
+    }
+    if extent.carried {
         all.push(Box::new(VelocityWeakening { extent }));
         all.push(Box::new(FrictionPatch { extent }));
         for axis in [place, time] {
