@@ -70,7 +70,7 @@ fn every_malformed_input_ends_in_exit_code_2_and_writes_nothing() {
 
 #[test]
 fn bad_arguments_end_in_exit_code_2() {
-    let cases: [(&[&str], &str); 18] = [
+    let cases: [(&[&str], &str); 19] = [
         (&["calibrate", "--friction", "coulom"], "--friction"),
         (&["calibrate", "--noise", "ar(0)"], "--noise"),
         (&["calibrate", "--noise", "ar(2)"], "regular grid"),
@@ -91,6 +91,7 @@ fn bad_arguments_end_in_exit_code_2() {
         (&["diagnose", "--odds", "surgee=3"], "none, unknown, turb"),
         (&["diagnose", "--out", "Cargo.toml"], "Cargo.toml is a file"),
         (&["challenge", "--out", "Cargo.toml/sub"], "Cargo.toml is a file"),
+        (&["challenge", "--errors", "reel"], "simple or real"),
         (&["fly"], "fly"),
     ];
     for (arguments, part) in cases {
