@@ -1,6 +1,8 @@
 //! The motion under a law, asked for: its states at given times, its end.
 
 use super::by_speed::SpeedWalker;
+use super::changed::ChangedWalker;
+use super::forces::{Forces, STEPS};
 use super::friction::{Friction, Varies};
 use super::motion::{Path, Release, Rest, State, follow, visit_times};
 use super::walk::ExactWalker;
@@ -22,6 +24,11 @@ pub fn sample<K: Kind, L: Friction<K>>(
     speed_only: bool,
     visit: impl FnMut(State<K>),
 ) -> Result<(), Stop> {
+    if path.steps().is_some() {
+        let forces = none(times.last().copied());
+        let walker = ChangedWalker::new(path, law, &forces, release)?;
+        return visit_times(walker, times, speed_only, visit);
+    }
     if law.varies() == Varies::WithSpeed {
         let walker = SpeedWalker::new(path, law, release)?;
         visit_times(walker, times, speed_only, visit)
@@ -40,9 +47,21 @@ pub fn rest<K: Kind, L: Friction<K>>(
     law: &L,
     release: Release<K>,
 ) -> Result<Option<Rest<K>>, Stop> {
+    if let Some(steps) = path.steps() {
+        let forces = none(Some(steps.last()));
+        return follow(ChangedWalker::new(path, law, &forces, release)?);
+    }
     if law.varies() == Varies::WithSpeed {
         follow(SpeedWalker::new(path, law, release)?)
     } else {
         follow(ExactWalker::new(path, law, release)?)
     }
+}
+
+/// No forces beside the law: a depth that changes with time is met where
+/// forces that do are. A law that varies with the speed is looked at as often
+/// as under a mechanism's force, in a run that lasts so long \[s\].
+fn none<K: Kind>(lasts: Option<f64>) -> Forces<K> {
+    let lasts = lasts.filter(|t| *t > 1.0).unwrap_or(1.0);
+    Forces { step: lasts / STEPS, ..Forces::default() }
 }
