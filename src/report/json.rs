@@ -32,6 +32,7 @@ pub fn calibration_json(report: &CalibrationReport) -> Value {
         "parameters": parameters,
         "log_evidence": report.evidence.as_ref().map(evidence),
         "checks": checks(&report.checks),
+        "notes": report.notes,
         "simulations": report.simulations,
     })
 }

@@ -182,6 +182,7 @@ impl Diagnosis {
             "separating": self.separating,
             "seconds": self.seconds,
             "warnings": self.warnings,
+            "notes": self.notes,
         })
     }
 }
