@@ -418,7 +418,7 @@ mod tests {
             ("x,depth,z\n0,1,2\n", "d.csv:1"),
             ("x,depth\n0,1\n0,2\n", "d.csv:3: 0 follows 0"),
             ("x,depth\n0,1\n2,0\n", "d.csv:3: depth = 0; expected metres"),
-            ("t,depth\n0,inf\n", "d.csv:2: depth is inf"),
+            ("t,depth\n0,inf\n", "d.csv:2: depth is \"inf\""),
             ("t,depth\n", "no rows"),
         ] {
             let error = read(text).unwrap_err().to_string();

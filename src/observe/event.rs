@@ -233,6 +233,11 @@ impl Event {
         self.with_recording(one.first(count)?)
     }
 
+    /// Whether the flow depth changes with time.
+    pub(super) fn has_depth_steps(&self) -> bool {
+        self.steps.is_some()
+    }
+
     fn set_depth(&mut self, depth: &Depth, x: f64) -> Result<()> {
         match depth {
             Depth::Even(depth) => self.depth = *depth,

@@ -22,13 +22,27 @@ pub fn sample<K: Kind, L: Friction<K>>(
     release: Release<K>,
     times: &[f64],
     speed_only: bool,
-    visit: impl FnMut(State<K>),
+    mut visit: impl FnMut(State<K>),
 ) -> Result<(), Stop> {
     if path.steps().is_some() {
-        let forces = none(times.last().copied());
-        let walker = ChangedWalker::new(path, law, &forces, release)?;
-        return visit_times(walker, times, speed_only, visit);
+        return sample_during(
+            path, law, release, times, speed_only, &mut visit,
+        );
     }
+    sample_steady(path, law, release, times, speed_only, visit)
+}
+
+/// The same where the depth does not change with time, which is not asked:
+/// the loop that calibrations spend their time in is best by itself.
+#[inline]
+pub(crate) fn sample_steady<K: Kind, L: Friction<K>>(
+    path: &Path<'_>,
+    law: &L,
+    release: Release<K>,
+    times: &[f64],
+    speed_only: bool,
+    visit: impl FnMut(State<K>),
+) -> Result<(), Stop> {
     if law.varies() == Varies::WithSpeed {
         let walker = SpeedWalker::new(path, law, release)?;
         visit_times(walker, times, speed_only, visit)
@@ -36,6 +50,22 @@ pub fn sample<K: Kind, L: Friction<K>>(
         let walker = ExactWalker::new(path, law, release)?;
         visit_times(walker, times, speed_only, visit)
     }
+}
+
+/// The same where it does.
+#[cold]
+#[inline(never)]
+fn sample_during<K: Kind>(
+    path: &Path<'_>,
+    law: &dyn Friction<K>,
+    release: Release<K>,
+    times: &[f64],
+    speed_only: bool,
+    visit: &mut dyn FnMut(State<K>),
+) -> Result<(), Stop> {
+    let forces = none(times.last().copied());
+    let walker = ChangedWalker::new(path, law, &forces, release)?;
+    visit_times(walker, times, speed_only, visit)
 }
 
 /// Follows the motion until the mass rests; `None` if it never does.

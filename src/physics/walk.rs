@@ -43,7 +43,7 @@ pub(super) fn sample_from<K: Kind, L: Friction<K>>(
 pub(super) struct ExactWalker<'a, K: Kind, L> {
     track: &'a Track,
     pieces: &'a [Piece],
-    path: Path<'a>,
+    depth: f64,
     law: &'a L,
     /// The law's rates, if they are the same everywhere.
     uniform: Option<Rate<K>>,
@@ -90,11 +90,11 @@ impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
         let Standing { index, within, begins, pace } = from;
         let pieces = path.track.pieces();
         let zero = Real::new(0.0);
-        let uniform = path.uniform(law, index, begins.value());
+        let uniform = path.uniform(law, index, 0.0);
         let mut walker = Self {
             track: path.track,
             pieces,
-            path: *path,
+            depth: path.depth,
             law,
             uniform,
             even: uniform.as_ref().and_then(Even::untilted),
@@ -208,8 +208,10 @@ impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
         self.resting = true;
     }
 
+    /// The piece it is on, as laws see it.
+    #[inline(never)]
     fn site(&self) -> Site {
-        self.path.site(self.index, self.begins.value())
+        Path::new(self.track, self.depth).site(self.index, 0.0)
     }
 
     fn place(&self) -> Real<K> {

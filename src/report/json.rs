@@ -95,6 +95,7 @@ mod tests {
                 "event",
                 "log_evidence",
                 "model",
+                "notes",
                 "parameters",
                 "schema",
                 "seed",
