@@ -70,7 +70,7 @@ fn every_malformed_input_ends_in_exit_code_2_and_writes_nothing() {
 
 #[test]
 fn bad_arguments_end_in_exit_code_2() {
-    let cases: [(&[&str], &str); 18] = [
+    let cases: [(&[&str], &str); 22] = [
         (&["calibrate", "--friction", "coulom"], "--friction"),
         (&["calibrate", "--noise", "ar(0)"], "--noise"),
         (&["calibrate", "--noise", "ar(2)"], "regular grid"),
@@ -91,6 +91,10 @@ fn bad_arguments_end_in_exit_code_2() {
         (&["diagnose", "--odds", "surgee=3"], "none, unknown, turb"),
         (&["diagnose", "--out", "Cargo.toml"], "Cargo.toml is a file"),
         (&["challenge", "--out", "Cargo.toml/sub"], "Cargo.toml is a file"),
+        (&["challenge", "--errors", "reel"], "simple or real"),
+        (&["diagnose", "--rate", "0"], "more than 0"),
+        (&["calibrate", "--rate", "5", "--thin", "x"], "average or pick"),
+        (&["calibrate", "--thin", "pick"], "--rate"),
         (&["fly"], "fly"),
     ];
     for (arguments, part) in cases {
@@ -438,4 +442,23 @@ fn an_output_that_cannot_be_written_is_not_the_inputs_fault() {
     arguments.extend(QUICK);
     let output = couloir(&arguments);
     assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+}
+
+#[test]
+fn a_thinned_recording_says_so() {
+    let run = |how: &[&str]| {
+        let all = [&["calibrate", "--json"], how, &QUICK[..]].concat();
+        let output = couloir(&all);
+        assert!(output.status.success(), "{}", said(&output));
+        let document: Value = serde_json::from_str(&printed(&output)).unwrap();
+        document["notes"].to_string()
+    };
+    assert_eq!(run(&[]), "[]");
+    // 69 speeds, one a second.
+    let means = run(&["--rate", "0.5"]);
+    assert!(means.contains("from 69 values"), "{means}");
+    assert!(means.contains("to 34: each is the mean of 2"), "{means}");
+    let picked = run(&["--rate", "0.25", "--thin", "pick"]);
+    assert!(picked.contains("to 17: of each 4 the last"), "{picked}");
+    assert!(run(&["--rate", "7"]).contains("left as it is"));
 }

@@ -3,6 +3,7 @@
 use clap::Args;
 
 use super::progress::Told;
+use super::thin::Thin;
 use super::{Output, Subject, Work, backend_name, width, written};
 use crate::calibrate::{Calibration, calibrate};
 use crate::error::Result;
@@ -16,6 +17,8 @@ pub(super) struct Arguments {
     #[command(flatten)]
     subject: Subject,
     #[command(flatten)]
+    thin: Thin,
+    #[command(flatten)]
     work: Work,
     /// Backend: mh, random-walk, nuts (where built with it), smc, importance,
     /// laplace-mixture, bridge or reciprocal
@@ -27,11 +30,14 @@ pub(super) struct Arguments {
 
 impl Arguments {
     pub(super) fn run(&self, laws: &Laws) -> Result<String> {
-        let model = self.subject.model(laws)?;
+        let subject =
+            Subject { thin: self.thin.clone(), ..self.subject.clone() };
+        let (model, said) = subject.model_told(laws)?;
         let backend = backend(&self.backend, &self.work.effort()?)?;
         let told = Told::new();
-        let found =
+        let mut found =
             calibrate(&model, backend.as_ref(), self.work.seed, &told)?;
+        found.report.notes = said;
         drop(told);
         let json = pretty(&calibration_json(&found.report));
         if let Some(folder) = &self.output.out {

@@ -7,6 +7,7 @@ use clap::Args;
 
 use super::calibrate::pretty;
 use super::progress::Told;
+use super::thin::Thin;
 use super::{Output, Subject, width, written};
 use crate::diagnosis::{
     Diagnosis, Odds, Options, Sharing, Together, diagnose, diagnose_together,
@@ -40,6 +41,12 @@ pub(super) struct Arguments {
     /// Let the amount of what is missing differ from event to event
     #[arg(long)]
     pooled: bool,
+    #[command(flatten)]
+    thin: Thin,
+    /// Diagnose again at half the recordings' rate, and warn where that
+    /// changes verdict or group; takes twice the time
+    #[arg(long)]
+    check_rate: bool,
     /// Seed of every random draw
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -66,13 +73,9 @@ type Files = Vec<(PathBuf, String)>;
 
 impl Arguments {
     pub(super) fn run(&self, laws: &Laws) -> Result<String> {
-        let subjects = self.subjects();
-        let models = subjects
-            .iter()
-            .map(|event| event.model(laws))
-            .collect::<Result<Vec<_>>>()?;
+        let subjects = self.subjects(&self.thin);
         let told = Told::new();
-        let (found, labels) = self.diagnose(models, &told)?;
+        let (found, labels) = self.found(&subjects, laws, &told)?;
         drop(told);
         let mut names =
             vec!["report.html", "diagnosis.json", "draws.csv", "pictures/"];
@@ -101,14 +104,37 @@ impl Arguments {
         Ok(text)
     }
 
+    /// The diagnosis of the events and, where that was asked for, what
+    /// another at half the rate makes of it.
+    fn found(
+        &self,
+        subjects: &[Subject],
+        laws: &Laws,
+        told: &Told,
+    ) -> Result<(Diagnosis, Vec<String>)> {
+        let (models, said) = models_of(subjects, laws)?;
+        // Looked at before the work and not after.
+        let halved = self.subjects(&self.thin.halved());
+        let halved =
+            self.check_rate.then(|| models_of(&halved, laws)).transpose()?;
+        let (mut found, labels) = self.diagnose(models, told)?;
+        found.notes = said;
+        if let Some((models, _)) = halved {
+            let (again, _) = self.diagnose(models, told)?;
+            found.check_rate(&again);
+        }
+        Ok((found, labels))
+    }
+
     /// Each event with what the command line changes of it.
-    fn subjects(&self) -> Vec<Subject> {
+    fn subjects(&self, thin: &Thin) -> Vec<Subject> {
         let of = |event: Option<PathBuf>| Subject {
             friction: self
                 .friction
                 .clone()
                 .or_else(|| event.is_none().then(|| "coulomb".to_owned())),
             noise: self.noise.clone(),
+            thin: thin.clone(),
             event,
         };
         if self.events.is_empty() {
@@ -143,6 +169,20 @@ impl Arguments {
         let found = diagnose(&model, model.event(), &options, told)?;
         Ok((found, Vec::new()))
     }
+}
+
+/// The models of events, and how their recordings were thinned.
+fn models_of(
+    subjects: &[Subject],
+    laws: &Laws,
+) -> Result<(Vec<Assembled>, Vec<String>)> {
+    let (mut models, mut said) = (Vec::new(), Vec::new());
+    for subject in subjects {
+        let (model, own) = subject.model_told(laws)?;
+        models.push(model);
+        said.extend(own);
+    }
+    Ok((models, said))
 }
 
 fn reports(found: &Diagnosis) -> Files {

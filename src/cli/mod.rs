@@ -14,12 +14,14 @@ mod progress;
 mod reproduce;
 mod simulate;
 mod study;
+mod thin;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 
+use self::thin::Thin;
 use crate::error::{Error, Result};
 use crate::infer::{Effort, backend};
 use crate::physics::friction::Laws;
@@ -53,7 +55,7 @@ enum Command {
 }
 
 /// Which event, and what to change of its model.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 struct Subject {
     /// Event folder, or its event.toml; a passenger car coasting uphill, a
     /// real recording, where none is given
@@ -65,6 +67,9 @@ struct Subject {
     /// white, ou, matern32, ar(k), tails, growth, such as "matern32 + white"
     #[arg(long, value_name = "NOISE")]
     noise: Option<String>,
+    /// How the command thins its recording.
+    #[arg(skip)]
+    thin: Thin,
 }
 
 /// How much work to do, and from which seed.

@@ -11,15 +11,33 @@ use crate::physics::friction::Laws;
 impl Subject {
     /// The event, the embedded one where none was named.
     pub(super) fn load(&self, laws: &Laws) -> Result<EventFile> {
-        match &self.event {
-            Some(path) => io::load(path, laws),
-            None => io::coastdown(laws),
-        }
+        self.load_told(laws).map(|(file, _)| file)
+    }
+
+    /// The same, and how its recordings were thinned.
+    fn load_told(&self, laws: &Laws) -> Result<(EventFile, Vec<String>)> {
+        let mut file = match &self.event {
+            Some(path) => io::load(path, laws)?,
+            None => io::coastdown(laws)?,
+        };
+        let place = file.path.display();
+        let thin = self.thin.apply(&file.event);
+        let (event, said) = thin.map_err(|e| e.within(place))?;
+        file.event = event;
+        Ok((file, said))
     }
 
     /// The model, with the laws that the command line may have changed.
     pub(super) fn model(&self, laws: &Laws) -> Result<Assembled> {
-        let file = self.load(laws)?;
+        self.model_told(laws).map(|(model, _)| model)
+    }
+
+    /// The same, and how its recordings were thinned.
+    pub(super) fn model_told(
+        &self,
+        laws: &Laws,
+    ) -> Result<(Assembled, Vec<String>)> {
+        let (file, said) = self.load_told(laws)?;
         let own = self.friction.is_none() && self.noise.is_none();
         let place = file.path.display().to_string();
         let friction = self.friction.clone();
@@ -29,7 +47,7 @@ impl Subject {
         if own {
             model.check_priors(&priors).map_err(|e| e.within(place))?;
         }
-        Ok(model)
+        Ok((model, said))
     }
 
     /// The event's files with these mechanisms added to its model, as far as
@@ -60,8 +78,10 @@ impl Subject {
         let unused = model.without_effect(&priors);
         let unused = unused.into_iter().map(str::to_owned).collect();
         let noise = other.map(str::to_owned).or(noise);
+        let recording = model.event().recordings().next();
+        let recording = recording.filter(|_| !self.thin.is_none()).cloned();
         let correction =
-            io::Correction { friction, noise, mechanisms, unused };
+            io::Correction { friction, noise, mechanisms, unused, recording };
         io::corrected(self.event.as_deref(), &correction)
     }
 }

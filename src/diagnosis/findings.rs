@@ -59,6 +59,9 @@ pub struct Diagnosis {
     pub seconds: f64,
     /// What to know before trusting it.
     pub warnings: Vec<String>,
+    /// How the recordings were thinned, and whether that matters, in
+    /// sentences.
+    pub notes: Vec<String>,
 }
 
 /// The model as it was, and how it stands to the recording.

@@ -12,6 +12,7 @@ mod fixture;
 mod hypothesis;
 mod locate;
 mod options;
+mod rate;
 mod tell;
 #[cfg(test)]
 mod tests;

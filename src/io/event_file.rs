@@ -6,15 +6,15 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::csv_file::{read_recording, read_track};
+use super::csv_file::{read_depth, read_recording, read_track};
 use super::document::{Document, Section};
 use super::source;
 use super::words::{either, nearest, place, quoted};
 use crate::error::{Error, Result, Stop};
 use crate::noise::{self, Grid, NoiseEntry, NoiseFor};
 use crate::observe::{Event, Quantity};
-use crate::physics::Track;
 use crate::physics::friction::{LawSum, Laws};
+use crate::physics::{Depth, Track};
 use crate::prior::AnyPrior;
 use crate::scalar::{Plain, Real};
 
@@ -144,7 +144,8 @@ pub fn parse_event<R: Read>(
 type Open<'o, R> = &'o dyn Fn(&str) -> Result<(R, PathBuf)>;
 
 fn read_event<R: Read>(top: &Section, open: Open<R>) -> Result<Event> {
-    let still = at_rest(top, read_track_section(top, open)?)?;
+    let depth = read_flow(&top.section("flow")?, open)?;
+    let still = at_rest(top, read_track_section(top, open)?, depth)?;
     let recording = top.section("recording")?;
     recording.only(&["file", "quantity", "window"])?;
     let quantity = read_quantity(&recording)?;
@@ -227,14 +228,26 @@ fn incline(section: &Section, slope: f64, length: f64) -> Result<Track> {
         .map_err(|error| section.about("length", error))
 }
 
-/// The event before anything was recorded.
-fn at_rest(top: &Section, track: Track) -> Result<Event> {
-    let (release, flow) = (top.section("release")?, top.section("flow")?);
-    let clock = top.section("event")?;
-    clock.only(&["start"])?;
-    let start = clock.number("start")?.unwrap_or(0.0);
-    release.only(&["x", "velocity"])?;
+/// The flow depth, a number or a file of them.
+fn read_flow<R: Read>(flow: &Section, open: Open<R>) -> Result<Depth> {
     flow.only(&["depth"])?;
+    if flow.is_text("depth")
+        && let Some(file) = flow.text("depth")?
+    {
+        if file.trim().parse::<f64>().is_ok() {
+            return Err(flow.at(
+                "depth",
+                format!(
+                    "is the text {}; expected a number or the name of a \
+                     file: drop the quotes",
+                    quoted(file)
+                ),
+            ));
+        }
+        let (source, path) =
+            open(file).map_err(|error| flow.about("depth", error))?;
+        return read_depth(source, &path);
+    }
     let depth = flow.number("depth")?.unwrap_or(1.0);
     if depth <= 0.0 {
         return Err(flow.at(
@@ -242,6 +255,15 @@ fn at_rest(top: &Section, track: Track) -> Result<Event> {
             format!("is {depth}; expected metres, more than 0"),
         ));
     }
+    Ok(Depth::Even(depth))
+}
+
+/// The event before anything was recorded.
+fn at_rest(top: &Section, track: Track, depth: Depth) -> Result<Event> {
+    let (clock, release) = (top.section("event")?, top.section("release")?);
+    clock.only(&["start"])?;
+    let start = clock.number("start")?.unwrap_or(0.0);
+    release.only(&["x", "velocity"])?;
     let velocity = release.number("velocity")?.unwrap_or(0.0);
     if velocity < 0.0 {
         return Err(release.at(
@@ -251,6 +273,10 @@ fn at_rest(top: &Section, track: Track) -> Result<Event> {
     }
     let x = release.number("x")?.unwrap_or(track.points().0[0]);
     track.distance_at(x).map_err(|error| release.about("x", error))?;
+    if let Depth::Along(rows) = &depth {
+        let flow = top.section("flow")?;
+        track.with_depths(rows).map_err(|error| flow.about("depth", error))?;
+    }
     let name = top.text("name")?.unwrap_or("event");
     Event::on(track)
         .named(name)

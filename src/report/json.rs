@@ -32,6 +32,7 @@ pub fn calibration_json(report: &CalibrationReport) -> Value {
         "parameters": parameters,
         "log_evidence": report.evidence.as_ref().map(evidence),
         "checks": checks(&report.checks),
+        "notes": report.notes,
         "simulations": report.simulations,
     })
 }
@@ -94,6 +95,7 @@ mod tests {
                 "event",
                 "log_evidence",
                 "model",
+                "notes",
                 "parameters",
                 "schema",
                 "seed",

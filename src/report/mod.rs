@@ -56,6 +56,8 @@ pub struct CalibrationReport {
     pub times: Vec<f64>,
     /// The recording, in `unit`.
     pub values: Vec<f64>,
+    /// How the recording was thinned beforehand, in sentences.
+    pub notes: Vec<String>,
     /// Standard errors of the values, where the recording gives them.
     pub standard_errors: Option<Vec<f64>>,
     /// What the posterior predicts.

@@ -26,7 +26,7 @@ const LISTED: usize = 6;
 /// assert!(words[0].contains("0 values"));
 /// ```
 pub fn in_words(report: &CalibrationReport) -> Vec<String> {
-    [
+    let mut words: Vec<String> = [
         misfit(report),
         Some(subject(report)),
         friction(report),
@@ -39,7 +39,9 @@ pub fn in_words(report: &CalibrationReport) -> Vec<String> {
     ]
     .into_iter()
     .flatten()
-    .collect()
+    .collect();
+    words.extend(report.notes.iter().cloned());
+    words
 }
 
 /// Whether the flow misses the recording by far more than changes from one

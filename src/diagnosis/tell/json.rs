@@ -184,6 +184,7 @@ impl Diagnosis {
             "separating": self.separating,
             "seconds": self.seconds,
             "warnings": self.warnings,
+            "notes": self.notes,
         })
     }
 }

@@ -66,6 +66,7 @@ pub fn in_words(d: &Diagnosis) -> Vec<String> {
         said.extend(ambiguity(d));
     }
     said.extend(trap(d));
+    said.extend(d.notes.iter().cloned());
     said.extend(warnings(d));
     said
 }
