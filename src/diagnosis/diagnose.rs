@@ -139,7 +139,8 @@ impl<P: Program> Subject<'_, P> {
         seed: Seed,
         progress: &dyn Progress,
     ) -> Result<usize> {
-        let row = taken(table, &self.log_of_noises(table, options));
+        let named = table.named().filter(|_| !options.infers_noise);
+        let row = taken(named, &self.log_of_noises(table, options));
         let seed = seed.child(2);
         table.rows[row].fill(&self.extent, &self.all, seed, progress)?;
         // Of those that have all fits by now.
@@ -149,7 +150,7 @@ impl<P: Program> Subject<'_, P> {
                 *log = f64::NEG_INFINITY;
             }
         }
-        Ok(taken(table, &logs))
+        Ok(taken(named, &logs))
     }
 
     fn log_of_noises(
@@ -191,7 +192,9 @@ impl<P: Program> Subject<'_, P> {
             mechanisms: judged.clone(),
             noise: decision.noises.clone(),
             selected_noise: match verdict {
-                Verdict::Adequate => options.noise.clone(),
+                Verdict::Adequate if !options.infers_noise => {
+                    options.noise.clone()
+                }
                 _ => row.noisy.name.clone(),
             },
             law,
@@ -201,6 +204,7 @@ impl<P: Program> Subject<'_, P> {
         diagnosis.rest = self.rest(row, after.as_ref(), seed)?;
         self.write_out(&mut diagnosis, chosen.as_ref(), forces, options);
         diagnosis.forces = forces.clone();
+        warn(&mut diagnosis, chosen.as_ref());
         diagnosis.weak = is_weak(&diagnosis);
         Ok(diagnosis)
     }
@@ -260,7 +264,8 @@ impl<P: Program> Subject<'_, P> {
         if let Some(chosen) = &chosen {
             chosen.call(&mut judged, all);
         }
-        if verdict == Verdict::Adequate && !table.keeps_named() {
+        let named_is_wrong = !table.keeps_named() && !options.infers_noise;
+        if verdict == Verdict::Adequate && named_is_wrong {
             verdict = Verdict::Errors;
         }
         let noises = judged_noises(table, &logs)?;
@@ -383,6 +388,14 @@ impl<P: Program> Subject<'_, P> {
             ..Diagnosis::default()
         })
     }
+}
+
+/// Adds what is worth knowing of fits that can be trusted to the warnings of
+/// those that cannot.
+fn warn(diagnosis: &mut Diagnosis, chosen: Option<&Chosen>) {
+    diagnosis.doubts = diagnosis.warnings.clone();
+    let beaten = chosen.and_then(|chosen| chosen.beaten.clone());
+    diagnosis.warnings.extend(beaten);
 }
 
 /// What the corrected model is, to be shown.

@@ -299,6 +299,7 @@ pub(super) fn diagnosis() -> Diagnosis {
         pictured: vec![pictured()],
         seconds: 6.2,
         warnings: vec![],
+        doubts: vec![],
     }
 }
 

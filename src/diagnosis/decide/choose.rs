@@ -34,6 +34,8 @@ pub(crate) struct Chosen {
     pub(crate) fit: Fit,
     /// What would do nearly as well in its place, with ln of its evidence.
     rivals: Vec<(Vec<usize>, f64)>,
+    /// Which others reach further, in words.
+    pub(crate) beaten: Option<String>,
 }
 
 /// The best pair with the best single mechanism in it, and the best without.
@@ -200,7 +202,7 @@ impl<P: Program> Choice<'_, P> {
             let mechanisms = rival.mechanisms(self.all);
             let names: Vec<_> = mechanisms.iter().map(|m| m.name()).collect();
             let gain = rival.fit.log_evidence - chosen.fit.log_evidence;
-            chosen.fit.warnings.push(format!(
+            chosen.beaten = Some(format!(
                 "{} together reach a higher evidence still, by {:.1} in log10",
                 names.join(" and "),
                 gain / LN_10
@@ -292,7 +294,7 @@ impl<P: Program> Choice<'_, P> {
 
 impl Chosen {
     fn new(which: Vec<usize>, fit: Fit) -> Self {
-        Self { which, fit, rivals: Vec::new() }
+        Self { which, fit, rivals: Vec::new(), beaten: None }
     }
 
     /// What would do nearly as well, most evidence first.

@@ -114,6 +114,7 @@ fn force_json(force: &FreeForce) -> Value {
 fn baseline_json(b: &Baseline) -> Value {
     json!({
         "friction": b.friction, "noise": b.noise,
+        "noise_inferred": b.infers_noise,
         "mechanisms": b.mechanisms,
         "log_evidence": b.log_evidence, "rmse": b.rmse,
         "ljung_box_p": b.ljung_box_p, "shapiro_wilk_p": b.shapiro_wilk_p,
@@ -182,6 +183,7 @@ impl Diagnosis {
             "separating": self.separating,
             "seconds": self.seconds,
             "warnings": self.warnings,
+            "doubts": self.doubts,
         })
     }
 }
