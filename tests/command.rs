@@ -213,6 +213,16 @@ fn converged(json: &Value) {
     assert!(json["warnings"].as_array().unwrap().is_empty(), "{json}");
 }
 
+/// Where nothing is added, the events of before stay, and it is said.
+fn stays(event: &str, out: &str, text: &str) {
+    let arguments = ["diagnose", event, "--odds", "none=1e30", "--out", out];
+    let output = couloir(&arguments);
+    assert!(output.status.success(), "{}", said(&output));
+    assert!(printed(&output).contains("corrected: of an earlier diagnosis"));
+    let corrected = Path::new(out).join("corrected/event.toml");
+    assert_eq!(std::fs::read_to_string(corrected).unwrap(), text);
+}
+
 #[test]
 fn a_diagnosis_writes_an_event_that_runs() {
     let folder = dragged("diagnosis");
@@ -253,12 +263,7 @@ fn a_diagnosis_writes_an_event_that_runs() {
     };
     let apart = of(&again, "mean") - of(&json, "mean");
     assert!(apart.abs() < of(&json, "sd") / 3.0, "{apart}");
-    // Where nothing is added, the events of before stay, and it is said.
-    let arguments = ["diagnose", event, "--odds", "none=1e30", "--out", out];
-    let output = couloir(&arguments);
-    assert!(output.status.success(), "{}", said(&output));
-    assert!(printed(&output).contains("corrected: of an earlier diagnosis"));
-    assert_eq!(read("corrected/event.toml"), text);
+    stays(event, out, &text);
 }
 
 #[test]

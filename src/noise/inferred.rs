@@ -25,3 +25,20 @@ pub(crate) fn stand_in<'g>(
         false => "ar(1)",
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_stands_in_exists_at_the_times_of_the_recording() {
+        let of = |times: &[f64]| {
+            let grid = Grid::new(times.to_vec(), None);
+            stand_in([&grid].into_iter())
+        };
+        assert_eq!(of(&[0.5, 1.0, 1.5, 2.0]), "ar(1)");
+        // A value missing leaves the grid regular.
+        assert_eq!(of(&[0.5, 1.0, 2.0, 2.5]), "ar(1)");
+        assert_eq!(of(&[0.5, 1.0, 1.7, 2.9]), "ou");
+    }
+}

@@ -79,3 +79,55 @@ pub fn noises(report: &CalibrationReport, width: usize) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::{calibration_json, fixture, in_words};
+
+    /// The fixture, averaged over two noises.
+    fn averaged() -> CalibrationReport {
+        let mut report = fixture::calibration();
+        assert!(noises(&report, 80).is_empty());
+        let named = report.noise.clone();
+        for (name, probability, factor) in
+            [(named.as_str(), 0.97, 0.0), ("ou + white", 0.03, -1.51)]
+        {
+            report.noises.push(NoiseReport {
+                name: name.to_owned(),
+                probability,
+                log10_bayes_factor: factor,
+                parameters: vec![report.parameters[0].clone()],
+                ..NoiseReport::default()
+            });
+        }
+        report
+    }
+
+    #[test]
+    fn the_noises_are_told_with_their_probabilities() {
+        let report = averaged();
+        for width in [44, 80] {
+            let text = noises(&report, width);
+            let widest = text.lines().map(|line| line.chars().count()).max();
+            assert!(widest.unwrap() <= width, "{text}");
+            assert!(text.contains("0.970") && text.contains("-1.5"), "{text}");
+        }
+        let said = in_words(&report).join(" ");
+        assert!(said.contains("with inferred errors"), "{said}");
+        assert!(said.contains("No noise was named: the motion"), "{said}");
+        let json = calibration_json(&report);
+        assert_eq!(json["model"]["noise"], "infer");
+        assert_eq!(json["noise"][1]["name"], "ou + white");
+        assert_eq!(json["noise"][1]["probability"], 0.03);
+        assert!(json["noise"][0]["parameters"]["mu"]["q05"].is_number());
+    }
+
+    #[cfg(feature = "pages")]
+    #[test]
+    fn the_page_has_the_noises() {
+        let html = crate::report::page(&averaged());
+        assert!(html.contains("What made the errors"));
+        assert!(html.contains("ou + white") && html.contains("−1.5"));
+    }
+}

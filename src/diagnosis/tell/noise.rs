@@ -86,5 +86,10 @@ mod tests {
              with outliers (matern32 + white + tails, probability 0.30), a \
              log10 Bayes factor of +3.1 against iid."
         );
+        // Where none was named, there is nothing to be against.
+        d.baseline.infers_noise = true;
+        let said = noise(&d).unwrap();
+        assert!(said.starts_with("No noise was named: the errors"), "{said}");
+        assert!(said.ends_with("white + tails, probability 0.30)."), "{said}");
     }
 }
