@@ -300,6 +300,7 @@ pub(super) fn diagnosis() -> Diagnosis {
         seconds: 6.2,
         warnings: vec![],
         notes: vec![],
+        doubts: vec![],
     }
 }
 

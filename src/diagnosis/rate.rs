@@ -4,7 +4,8 @@ use crate::diagnosis::{Diagnosis, Verdict};
 
 impl Diagnosis {
     /// Compares with a diagnosis of the same recordings at half the rate, and
-    /// warns, before all else, where the verdict or the group is another.
+    /// warns, before all else, where the verdict or the group is another: a
+    /// reason not to use it.
     ///
     /// ```
     /// use couloir::diagnosis::{Diagnosis, Verdict};
@@ -31,15 +32,13 @@ impl Diagnosis {
             );
             return;
         }
-        self.warnings.insert(
-            0,
-            format!(
-                "at half the rate {}: what is found hangs on how dense the \
-                 recording is, as it does where the noise is not the right \
-                 one",
-                other.join(", and ")
-            ),
+        let said = format!(
+            "at half the rate {}: what is found hangs on how dense the \
+             recording is, as it does where the noise is not the right one",
+            other.join(", and ")
         );
+        self.doubts.insert(0, said.clone());
+        self.warnings.insert(0, said);
     }
 }
 
@@ -82,5 +81,6 @@ mod tests {
         let said = "at half the rate the group is surge instead of \
                     entrainment, surge:";
         assert!(found.warnings[0].starts_with(said), "{:?}", found.warnings);
+        assert_eq!(found.doubts, found.warnings[..1]);
     }
 }

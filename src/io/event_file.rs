@@ -11,8 +11,8 @@ use super::document::{Document, Section};
 use super::source;
 use super::words::{either, nearest, place, quoted};
 use crate::error::{Error, Result, Stop};
-use crate::noise::{self, Grid, NoiseEntry, NoiseFor};
-use crate::observe::{Event, Quantity};
+use crate::noise::{self, Grid, NoiseEntry, NoiseFor, is_inferred, stand_in};
+use crate::observe::{Event, Quantity, Series};
 use crate::physics::friction::{LawSum, Laws};
 use crate::physics::{Depth, Track};
 use crate::prior::AnyPrior;
@@ -23,10 +23,11 @@ pub(super) const MOST_BYTES: u64 = 1 << 20;
 
 /// An event with the model that its file asks for.
 ///
-/// What a file leaves out is: `event.start` 0, `track.origin` 0, `release.x` the track's first
-/// point, `release.velocity` 0, `flow.depth` 1 m (then xi stands for the
-/// product xi h), `recording.window` 0, `model.friction` "voellmy",
-/// `model.noise` "iid", and the blocks' own priors.
+/// What a file leaves out is: `event.start` 0, `track.origin` 0, `release.x`
+/// the track's first point, `release.velocity` 0, `flow.depth` 1 m (then xi
+/// stands for the product xi h), `recording.window` 0, `model.friction`
+/// "voellmy", `model.noise` "iid", and the blocks' own priors. The noise
+/// "infer" is whichever is likely.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct EventFile {
@@ -34,8 +35,10 @@ pub struct EventFile {
     pub event: Event,
     /// The friction law.
     pub friction: LawSum,
-    /// The noise.
+    /// The noise; where it is to be inferred, the one to begin with.
     pub noise: Box<dyn NoiseEntry>,
+    /// Whether it is to be inferred.
+    pub infers_noise: bool,
     /// Priors by the names of their parameters; whether the model has such
     /// parameters is not checked here.
     pub priors: BTreeMap<String, AnyPrior>,
@@ -123,17 +126,15 @@ pub fn parse_event<R: Read>(
     let model = Model::read(&top, laws)?;
     let priors = read_priors(&top.section("priors")?)?;
     let event = read_event(&top, &open)?;
-    for series in event.recordings() {
-        check_noise(model.noise.as_ref(), series.grid())
-            .map_err(|error| model.section.about("noise", error))?;
-    }
+    let noise = model.noise_of(&event)?;
     let mechanisms_at = model.section.spot("mechanisms");
-    let Model { friction, noise, mechanisms, .. } = model;
+    let Model { friction, noise: named, mechanisms, .. } = model;
     let path = path.to_owned();
     Ok(EventFile {
         event,
         friction,
         noise,
+        infers_noise: is_inferred(&named),
         priors,
         mechanisms,
         mechanisms_at,
@@ -291,7 +292,7 @@ fn at_rest(top: &Section, track: Track, depth: Depth) -> Result<Event> {
 struct Model<'d> {
     section: Section<'d>,
     friction: LawSum,
-    noise: Box<dyn NoiseEntry>,
+    noise: String,
     mechanisms: Vec<String>,
 }
 
@@ -304,11 +305,28 @@ impl<'d> Model<'d> {
             .parse(text)
             .and_then(once_each)
             .map_err(|error| section.about("friction", error))?;
-        let noise = noise::parse(section.text("noise")?.unwrap_or("iid"))
-            .map_err(|error| section.about("noise", error))?;
+        let noise = section.text("noise")?.unwrap_or("iid").to_owned();
+        if !is_inferred(&noise) {
+            noise::parse(&noise)
+                .map_err(|error| section.about("noise", error))?;
+        }
         let mechanisms = section.texts("mechanisms")?;
         let mechanisms = mechanisms.into_iter().map(str::to_owned).collect();
         Ok(Self { section, friction, noise, mechanisms })
+    }
+
+    /// The noise of an event's recordings.
+    fn noise_of(&self, event: &Event) -> Result<Box<dyn NoiseEntry>> {
+        let name = match is_inferred(&self.noise) {
+            true => stand_in(event.recordings().map(Series::grid)),
+            false => &self.noise,
+        };
+        let noise = noise::parse(name)?;
+        for series in event.recordings() {
+            check_noise(noise.as_ref(), series.grid())
+                .map_err(|error| self.section.about("noise", error))?;
+        }
+        Ok(noise)
     }
 }
 
