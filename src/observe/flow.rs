@@ -6,7 +6,7 @@ use crate::context::Buffer;
 use crate::declared::Declared;
 use crate::error::{Error, Stop};
 use crate::mechanism::Change;
-use crate::physics::{Friction, Rest, State, sample_steady};
+use crate::physics::{Friction, Rest, State, sample};
 use crate::scalar::{Kind, Real};
 
 /// The motion of one event under one friction law.
@@ -57,7 +57,7 @@ impl Event {
             self.slide_changed(friction, change, speed_only, visit)?;
             return Ok(flow);
         }
-        sample_steady(
+        sample(
             &self.path(),
             friction.block(),
             self.release(),

@@ -31,7 +31,6 @@ pub use forces::Forces;
 pub use friction::{Friction, Rate, Site, Sum, Varies};
 pub use lanes::speeds;
 pub use motion::{Path, Release, Rest, State};
-pub(crate) use sample::sample_steady;
 pub use sample::{rest, sample};
 pub use track::Track;
 

@@ -39,6 +39,11 @@ impl<'a> Path<'a> {
         self.steps
     }
 
+    /// Whether the depth is one number.
+    pub(super) fn is_even(&self) -> bool {
+        self.steps.is_none() && !self.track.has_depths()
+    }
+
     /// A law's rates at a time \[s\], where they are the same on all pieces.
     #[inline(always)]
     pub(super) fn uniform<K: Kind, L: Friction<K> + ?Sized>(
@@ -52,6 +57,7 @@ impl<'a> Path<'a> {
     }
 
     /// A piece, as laws see it from a time \[s\] on.
+    #[inline]
     pub(crate) fn site(&self, index: usize, time: f64) -> Site {
         let piece = &self.track.pieces()[index];
         let endless = !piece.length.is_finite();

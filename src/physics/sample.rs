@@ -3,11 +3,11 @@
 use super::by_speed::SpeedWalker;
 use super::changed::ChangedWalker;
 use super::forces::{Forces, STEPS};
-use super::friction::{Friction, Varies};
+use super::friction::{Friction, Rate, Site, Varies};
 use super::motion::{Path, Release, Rest, State, follow, visit_times};
 use super::walk::ExactWalker;
 use crate::error::Stop;
-use crate::scalar::Kind;
+use crate::scalar::{Kind, Real};
 
 /// Solves the motion and hands the state at each of the increasing `times`
 /// \[s\] to `visit`. With `speed_only`, distance and acceleration are left at
@@ -24,25 +24,10 @@ pub fn sample<K: Kind, L: Friction<K>>(
     speed_only: bool,
     mut visit: impl FnMut(State<K>),
 ) -> Result<(), Stop> {
-    if path.steps().is_some() {
-        return sample_during(
-            path, law, release, times, speed_only, &mut visit,
-        );
+    if !path.is_even() {
+        let visit = &mut visit;
+        return sample_uneven(path, law, release, times, speed_only, visit);
     }
-    sample_steady(path, law, release, times, speed_only, visit)
-}
-
-/// The same where the depth does not change with time, which is not asked:
-/// the loop that calibrations spend their time in is best by itself.
-#[inline]
-pub(crate) fn sample_steady<K: Kind, L: Friction<K>>(
-    path: &Path<'_>,
-    law: &L,
-    release: Release<K>,
-    times: &[f64],
-    speed_only: bool,
-    visit: impl FnMut(State<K>),
-) -> Result<(), Stop> {
     if law.varies() == Varies::WithSpeed {
         let walker = SpeedWalker::new(path, law, release)?;
         visit_times(walker, times, speed_only, visit)
@@ -52,10 +37,11 @@ pub(crate) fn sample_steady<K: Kind, L: Friction<K>>(
     }
 }
 
-/// The same where it does.
+/// The same where the depth changes. Its own code, and not compiled for every
+/// law: the loop that calibrations spend their time in is best by itself.
 #[cold]
 #[inline(never)]
-fn sample_during<K: Kind>(
+fn sample_uneven<K: Kind>(
     path: &Path<'_>,
     law: &dyn Friction<K>,
     release: Release<K>,
@@ -63,9 +49,18 @@ fn sample_during<K: Kind>(
     speed_only: bool,
     visit: &mut dyn FnMut(State<K>),
 ) -> Result<(), Stop> {
-    let forces = none(times.last().copied());
-    let walker = ChangedWalker::new(path, law, &forces, release)?;
-    visit_times(walker, times, speed_only, visit)
+    let law = &PieceByPiece(law);
+    if path.steps().is_some() {
+        let forces = none(times.last().copied());
+        let walker = ChangedWalker::new(path, law.0, &forces, release)?;
+        visit_times(walker, times, speed_only, visit)
+    } else if law.varies() == Varies::WithSpeed {
+        let walker = SpeedWalker::new(path, law, release)?;
+        visit_times(walker, times, speed_only, visit)
+    } else {
+        let walker = ExactWalker::new(path, law, release)?;
+        visit_times(walker, times, speed_only, visit)
+    }
 }
 
 /// Follows the motion until the mass rests; `None` if it never does.
@@ -77,14 +72,45 @@ pub fn rest<K: Kind, L: Friction<K>>(
     law: &L,
     release: Release<K>,
 ) -> Result<Option<Rest<K>>, Stop> {
-    if let Some(steps) = path.steps() {
-        let forces = none(Some(steps.last()));
-        return follow(ChangedWalker::new(path, law, &forces, release)?);
+    if !path.is_even() {
+        return rest_uneven(path, law, release);
     }
     if law.varies() == Varies::WithSpeed {
         follow(SpeedWalker::new(path, law, release)?)
     } else {
         follow(ExactWalker::new(path, law, release)?)
+    }
+}
+
+/// The same where the depth changes.
+#[cold]
+#[inline(never)]
+fn rest_uneven<K: Kind>(
+    path: &Path<'_>,
+    law: &dyn Friction<K>,
+    release: Release<K>,
+) -> Result<Option<Rest<K>>, Stop> {
+    let law = &PieceByPiece(law);
+    if let Some(steps) = path.steps() {
+        let forces = none(Some(steps.last()));
+        follow(ChangedWalker::new(path, law.0, &forces, release)?)
+    } else if law.varies() == Varies::WithSpeed {
+        follow(SpeedWalker::new(path, law, release)?)
+    } else {
+        follow(ExactWalker::new(path, law, release)?)
+    }
+}
+
+/// A law where the depth differs from piece to piece, and its rates do too.
+struct PieceByPiece<'a, K>(&'a dyn Friction<K>);
+
+impl<K: Kind> Friction<K> for PieceByPiece<'_, K> {
+    fn varies(&self) -> Varies {
+        self.0.varies().max(Varies::WithPlace)
+    }
+
+    fn rate(&self, at: &Site, speed: Real<K>) -> Rate<K> {
+        self.0.rate(at, speed)
     }
 }
 

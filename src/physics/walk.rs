@@ -2,7 +2,7 @@
 
 use super::ahead::Ahead;
 use super::exact::{End, Force, Pace};
-use super::friction::{Friction, Rate, Site};
+use super::friction::{Friction, Rate, Site, Varies};
 use super::motion::{
     Path, Release, Rest, State, Walker, first_piece, visit_times,
 };
@@ -90,7 +90,8 @@ impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
         let Standing { index, within, begins, pace } = from;
         let pieces = path.track.pieces();
         let zero = Real::new(0.0);
-        let uniform = path.uniform(law, index, 0.0);
+        let uniform = (law.varies() == Varies::Nowhere)
+            .then(|| law.rate(&path.site(index, 0.0), zero));
         let mut walker = Self {
             track: path.track,
             pieces,
@@ -209,7 +210,7 @@ impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
     }
 
     /// The piece it is on, as laws see it.
-    #[inline(never)]
+    #[inline(always)]
     fn site(&self) -> Site {
         Path::new(self.track, self.depth).site(self.index, 0.0)
     }
