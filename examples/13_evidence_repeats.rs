@@ -7,7 +7,7 @@ use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use couloir::challenge::{Mix, cases};
+use couloir::challenge::{Errors, Mix, cases};
 use couloir::diagnosis::attribute;
 use couloir::io;
 use couloir::mechanism::catalogue::catalogue;
@@ -49,7 +49,7 @@ fn challenge_case(text: &str, laws: &Laws) -> Result<io::EventFile> {
     let (seed, number) = text.split_once(':').ok_or_else(wrong)?;
     let seed = seed.parse().map_err(|_| wrong())?;
     let number: usize = number.parse().map_err(|_| wrong())?;
-    let all = cases(EFFECTS, seed, Mix::One)?;
+    let all = cases(EFFECTS, seed, Mix::One, Errors::Simple)?;
     let index = number.checked_sub(1).ok_or_else(wrong)?;
     let case = all.get(index).ok_or_else(wrong)?;
     println!("\n{} of seed {seed}: {}", case.name, case.truth.effect);

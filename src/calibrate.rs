@@ -155,7 +155,8 @@ fn tell_run(report: &mut CalibrationReport, found: Inference, draws: &Draws) {
         se: e.se,
         method: e.method,
     });
-    report.warnings = found.warnings;
+    report.doubts = found.warnings.clone();
+    report.warnings = [found.warnings, found.hints].concat();
 }
 
 fn tell_recording(
@@ -251,7 +252,8 @@ fn parameters(
         .collect()
 }
 
-fn of_summary(s: &Summary) -> ParameterReport {
+/// A parameter's figures, from a summary of its draws.
+pub(crate) fn of_summary(s: &Summary) -> ParameterReport {
     ParameterReport {
         name: s.name.clone(),
         unit: s.unit.clone(),
@@ -276,7 +278,7 @@ fn thin(chain: &[f64]) -> Vec<f64> {
 }
 
 /// The posterior density of a parameter, as a curve.
-fn curve(
+pub(crate) fn curve(
     prior: &AnyPrior,
     draws: &Draws,
     parameter: usize,

@@ -74,7 +74,7 @@
 //! | [`infer`], [`predict`] | backends; predictions |
 //! | [`elpd`], [`io`], [`report`] | prediction of what was left out; event files in; tables, pictures and pages out |
 //! | [`calibrate`], [`diagnosis`] | a whole calibration; what a model lacks |
-//! | [`sbc`] | whether inference can be trusted |
+//! | [`averaged`], [`sbc`] | a calibration averaged over noises, and beside a force of free form; whether inference can be trusted |
 //! | [`mod@reproduce`], [`challenge`] | the paper's study, computed again; hidden effects, made without the engine, and the score |
 //! | [`cli`] | the command: nothing below it prints |
 //!
@@ -96,6 +96,7 @@
 //! `ARCHITECTURE.md`.
 #![warn(clippy::print_stdout, clippy::print_stderr, clippy::unwrap_used)]
 
+pub mod averaged;
 pub mod block;
 pub mod calibrate;
 #[cfg(feature = "cli")]

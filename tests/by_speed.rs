@@ -86,7 +86,7 @@ fn states(
     speed: f64,
     times: &[f64],
 ) -> Vec<State<Plain>> {
-    let path = Path { track, depth: 1.0 };
+    let path = Path::new(track, 1.0);
     let release = Release { distance: 0.0.into(), speed: speed.into() };
     let mut all = Vec::new();
     sample(&path, law, release, times, false, |s| all.push(s)).unwrap();
@@ -198,7 +198,7 @@ impl Run {
     /// The same as solved, with derivatives by mu.
     fn solved(&self, times: &[f64]) -> Vec<[Real<Grad<1>>; 2]> {
         let law = Jumps { mu: Real::variable(self.mu, 0), at: self.at };
-        let path = Path { track: &self.track, depth: 1.0 };
+        let path = Path::new(&self.track, 1.0);
         let speed = self.from.into();
         let release = Release { distance: 0.0.into(), speed };
         let mut all = Vec::new();
@@ -237,7 +237,7 @@ fn a_jump_is_passed_at_its_speed() {
 #[test]
 fn what_cannot_be_integrated_is_refused() {
     let track = any_track(&mut Seed::new(42).rng());
-    let path = Path { track: &track, depth: 1.0 };
+    let path = Path::new(&track, 1.0);
     let release = Release { distance: 0.0.into(), speed: 9.0.into() };
     let laws = [
         |_: f64| f64::NAN,

@@ -44,7 +44,7 @@ fn changed<K: couloir::physics::friction::LawKind>(
 ) -> Vec<Real<K>> {
     let law = Laws::default().parse(law).unwrap();
     let values: Vec<Real<K>> = values.iter().map(|&v| Real::new(v)).collect();
-    let path = Path { track, depth: 1.3 };
+    let path = Path::new(track, 1.3);
     let release = Release { distance: AT.0.into(), speed: AT.1.into() };
     let mut speeds = Vec::new();
     let at = times.iter().map(|&t| Real::new(t));
@@ -59,7 +59,7 @@ fn plain(track: &Track, law: &str, values: &[f64], at: &[f64]) -> Vec<f64> {
     let law = Laws::default().parse(law).unwrap();
     let values: Vec<Real<Plain>> =
         values.iter().map(|&v| Real::new(v)).collect();
-    let path = Path { track, depth: 1.3 };
+    let path = Path::new(track, 1.3);
     let release = Release { distance: AT.0.into(), speed: AT.1.into() };
     let mut speeds = Vec::new();
     sample(&path, &law.with(&values), release, at, true, |s| {
@@ -151,7 +151,7 @@ fn a_push_sets_a_resting_mass_moving_again() {
 #[test]
 fn a_force_without_an_end_lets_a_mass_come_to_rest() {
     let track = Track::incline(10.0, 500.0).unwrap();
-    let path = Path { track: &track, depth: 1.3 };
+    let path = Path::new(&track, 1.3);
     let release = Release { distance: AT.0.into(), speed: 9.0.into() };
     let law = Laws::default().parse("coulomb").unwrap();
     let values = [Real::<Plain>::new(0.3)];

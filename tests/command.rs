@@ -70,13 +70,18 @@ fn every_malformed_input_ends_in_exit_code_2_and_writes_nothing() {
 
 #[test]
 fn bad_arguments_end_in_exit_code_2() {
-    let cases: [(&[&str], &str); 18] = [
+    let cases: [(&[&str], &str); 24] = [
         (&["calibrate", "--friction", "coulom"], "--friction"),
         (&["calibrate", "--noise", "ar(0)"], "--noise"),
         (&["calibrate", "--noise", "ar(2)"], "regular grid"),
         (&["calibrate", "--backend", "nuts2"], "mh"),
         (&["calibrate", "--backend", "map"], "no draws"),
         (&["calibrate", "--chains", "0"], "1"),
+        (&["bench", "--noise", "infer"], "--noise \"ar(1)\""),
+        (
+            &["compare", "--model", "voellmy, infer", "--model", "none, iid"],
+            "name it, as in",
+        ),
         (&["calibrate", "--draws=-3"], "draws"),
         (&["calibrate", "--seed", "x"], "seed"),
         (&["calibrate", "--draws", "90000000"], "fewer --draws"),
@@ -91,6 +96,10 @@ fn bad_arguments_end_in_exit_code_2() {
         (&["diagnose", "--odds", "surgee=3"], "none, unknown, turb"),
         (&["diagnose", "--out", "Cargo.toml"], "Cargo.toml is a file"),
         (&["challenge", "--out", "Cargo.toml/sub"], "Cargo.toml is a file"),
+        (&["challenge", "--errors", "reel"], "simple or real"),
+        (&["diagnose", "--rate", "0"], "more than 0"),
+        (&["calibrate", "--rate", "5", "--thin", "x"], "average or pick"),
+        (&["calibrate", "--thin", "pick"], "--rate"),
         (&["fly"], "fly"),
     ];
     for (arguments, part) in cases {
@@ -201,6 +210,23 @@ fn dragged(name: &str) -> PathBuf {
     folder
 }
 
+/// A run by the backend that sees several modes, without warnings.
+fn converged(json: &Value) {
+    assert_eq!(json["backend"], "laplace-mixture");
+    assert!(json["backend_why"].as_str().unwrap().contains("several modes"));
+    assert!(json["warnings"].as_array().unwrap().is_empty(), "{json}");
+}
+
+/// Where nothing is added, the events of before stay, and it is said.
+fn stays(event: &str, out: &str, text: &str) {
+    let arguments = ["diagnose", event, "--odds", "none=1e30", "--out", out];
+    let output = couloir(&arguments);
+    assert!(output.status.success(), "{}", said(&output));
+    assert!(printed(&output).contains("corrected: of an earlier diagnosis"));
+    let corrected = Path::new(out).join("corrected/event.toml");
+    assert_eq!(std::fs::read_to_string(corrected).unwrap(), text);
+}
+
 #[test]
 fn a_diagnosis_writes_an_event_that_runs() {
     let folder = dragged("diagnosis");
@@ -234,18 +260,14 @@ fn a_diagnosis_writes_an_event_that_runs() {
     let again: Value = serde_json::from_str(&printed(&output)).unwrap();
     assert_eq!(again["model"]["friction"], "coulomb");
     assert_eq!(again["model"]["mechanisms"][0], "turbulent-drag");
+    converged(&again);
     // The same posterior from another backend: within a third of its sd.
     let of = |json: &Value, what: &str| {
         json["parameters"]["turbulent-drag.drag"][what].as_f64().unwrap()
     };
     let apart = of(&again, "mean") - of(&json, "mean");
     assert!(apart.abs() < of(&json, "sd") / 3.0, "{apart}");
-    // Where nothing is added, the events of before stay, and it is said.
-    let arguments = ["diagnose", event, "--odds", "none=1e30", "--out", out];
-    let output = couloir(&arguments);
-    assert!(output.status.success(), "{}", said(&output));
-    assert!(printed(&output).contains("corrected: of an earlier diagnosis"));
-    assert_eq!(read("corrected/event.toml"), text);
+    stays(event, out, &text);
 }
 
 #[test]
@@ -300,6 +322,136 @@ fn a_calibration_writes_what_the_formats_say() {
     assert!(page.contains("<svg") && page.contains("Lautaret-like"));
     let names: Vec<_> = std::fs::read_dir(&out).unwrap().collect();
     assert_eq!(names.len(), 3, "{names:?}");
+}
+
+#[test]
+fn a_run_that_should_not_be_used_says_so_by_its_exit_code_where_asked() {
+    let out = fresh("strict");
+    let short = ["--draws", "20", "--warmup", "20", "--json"];
+    let run = |more: &[&str]| {
+        let all = [&["calibrate", REFERENCE], &short[..], more].concat();
+        couloir(&all)
+    };
+    let strict = run(&["--strict", "--out", out.to_str().unwrap()]);
+    assert_eq!(strict.status.code(), Some(4), "{}", said(&strict));
+    assert!(said(&strict).contains("not to be used: the chains have"));
+    // What was found is told and written all the same.
+    let json: Value = serde_json::from_str(&printed(&strict)).unwrap();
+    let warning = json["warnings"][0].as_str().unwrap();
+    assert!(warning.contains("R-hat"), "{warning}");
+    let written =
+        std::fs::read_to_string(out.join("calibration.json")).unwrap();
+    assert_eq!(written, printed(&strict));
+    let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("have not agreed"));
+    assert!(run(&[]).status.success());
+    let fine = couloir(&["calibrate", REFERENCE, "--strict"]);
+    assert!(fine.status.success(), "{}", said(&fine));
+    assert!(!printed(&fine).contains("Warning"), "{}", printed(&fine));
+}
+
+/// The reference without its noise and the priors of that.
+fn without_noise(name: &str) -> PathBuf {
+    let folder = fresh(name);
+    std::fs::create_dir_all(&folder).unwrap();
+    let read = |name: &str| {
+        std::fs::read_to_string(Path::new(REFERENCE).join(name)).unwrap()
+    };
+    for name in ["track.csv", "recording.csv"] {
+        std::fs::write(folder.join(name), read(name)).unwrap();
+    }
+    let event = read("event.toml");
+    let (event, _) = event.split_once("phi =").unwrap();
+    let event = event.replace("noise = \"ar(1)\"", "noise = \"infer\"");
+    std::fs::write(folder.join("event.toml"), event).unwrap();
+    folder
+}
+
+#[test]
+fn a_noise_that_is_inferred_is_averaged_over() {
+    let folder = without_noise("inferred");
+    let run = |more: &[&str]| -> Value {
+        let all = ["calibrate", folder.to_str().unwrap(), "--json"];
+        let output = couloir(&[&all[..], more].concat());
+        assert!(output.status.success(), "{}", said(&output));
+        serde_json::from_str(&printed(&output)).unwrap()
+    };
+    let json = run(&[]);
+    assert_eq!(json["model"]["noise"], "infer");
+    converged(&json);
+    let noises = json["noise"].as_array().unwrap();
+    assert!(noises.len() > 1, "{noises:?}");
+    // Bayes' rule, from the evidence of each by itself.
+    let mut told = Vec::new();
+    for noise in noises {
+        let name = noise["name"].as_str().unwrap();
+        let backend = ["--backend", "laplace-mixture"];
+        let alone = run(&[&["--noise", name][..], &backend].concat());
+        let of = |json: &Value, key: &str| json[key].as_f64().unwrap();
+        let mu = &alone["parameters"]["mu"];
+        let log = of(&alone["log_evidence"], "value");
+        told.push((of(noise, "probability"), log, of(mu, "mean")));
+    }
+    let top = told.iter().map(|t| t.1).fold(f64::NEG_INFINITY, f64::max);
+    let total: f64 = told.iter().map(|t| (t.1 - top).exp()).sum();
+    let mut mean = 0.0;
+    for (probability, log, mu) in told {
+        let expected = (log - top).exp() / total;
+        assert!((probability - expected).abs() < 1e-6, "{expected}");
+        mean += expected * mu;
+    }
+    let mu = &json["parameters"]["mu"];
+    let apart = mu["mean"].as_f64().unwrap() - mean;
+    assert!(apart.abs() < 0.1 * mu["sd"].as_f64().unwrap(), "{apart}");
+    let said = printed(&couloir(&["calibrate", folder.to_str().unwrap()]));
+    assert!(said.contains("No noise was named"), "{said}");
+}
+
+#[test]
+fn the_law_is_told_with_the_rest_of_the_physics_open() {
+    // mu was 0.25, with a drag.
+    let folder = dragged("rest").join("event");
+    let law = |friction: &str| -> Value {
+        let event = folder.to_str().unwrap();
+        let output = couloir(&[
+            "calibrate",
+            event,
+            "--friction",
+            friction,
+            "--rest",
+            "--json",
+        ]);
+        assert!(output.status.success(), "{}", said(&output));
+        let json: Value = serde_json::from_str(&printed(&output)).unwrap();
+        json["law"].clone()
+    };
+    let holds = |json: &Value| {
+        let of = |key: &str| json["mu"][key].as_f64().unwrap();
+        (of("q05")..of("q95")).contains(&0.25)
+    };
+    let without_drag = law("coulomb");
+    assert_eq!(without_drag["use"], "with_free_form_force");
+    assert!(!holds(&without_drag["as_it_was"]), "{without_drag}");
+    assert!(holds(&without_drag["with_free_form_force"]), "{without_drag}");
+    let with_drag = law("voellmy");
+    assert_eq!(with_drag["use"], "as_it_was", "{with_drag}");
+    assert!(holds(&with_drag["as_it_was"]), "{with_drag}");
+    assert!(with_drag["as_it_was"]["xi"].is_object());
+}
+
+#[test]
+fn a_diagnosis_prefers_no_noise_where_none_is_named() {
+    let folder = dragged("no-noise").join("event");
+    let arguments = ["--friction", "coulomb", "--noise", "infer", "--json"];
+    let event = folder.to_str().unwrap();
+    let output = couloir(&[&["diagnose", event][..], &arguments].concat());
+    assert!(output.status.success(), "{}", said(&output));
+    let json: Value = serde_json::from_str(&printed(&output)).unwrap();
+    assert_eq!(json["baseline"]["noise_inferred"], true);
+    assert_eq!(json["selected"][0], "turbulent-drag");
+    // The likeliest, and the one that the corrected event names.
+    assert_eq!(json["selected_noise"], json["noise"][0]["name"]);
+    assert_eq!(json["corrected"]["noise"], json["selected_noise"]);
 }
 
 #[test]
@@ -438,4 +590,23 @@ fn an_output_that_cannot_be_written_is_not_the_inputs_fault() {
     arguments.extend(QUICK);
     let output = couloir(&arguments);
     assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+}
+
+#[test]
+fn a_thinned_recording_says_so() {
+    let run = |how: &[&str]| {
+        let all = [&["calibrate", "--json"], how, &QUICK[..]].concat();
+        let output = couloir(&all);
+        assert!(output.status.success(), "{}", said(&output));
+        let document: Value = serde_json::from_str(&printed(&output)).unwrap();
+        document["notes"].to_string()
+    };
+    assert_eq!(run(&[]), "[]");
+    // 69 speeds, one a second.
+    let means = run(&["--rate", "0.5"]);
+    assert!(means.contains("from 69 values"), "{means}");
+    assert!(means.contains("to 34: each is the mean of 2"), "{means}");
+    let picked = run(&["--rate", "0.25", "--thin", "pick"]);
+    assert!(picked.contains("to 17: of each 4 the last"), "{picked}");
+    assert!(run(&["--rate", "7"]).contains("left as it is"));
 }

@@ -36,7 +36,7 @@ fn states(
     times: &[f64],
 ) -> Vec<State<Plain>> {
     let mut states = Vec::new();
-    let path = Path { track, depth };
+    let path = Path::new(track, depth);
     sample(&path, law, start, times, false, |s| states.push(s)).unwrap();
     states
 }
@@ -46,7 +46,7 @@ fn end(
     law: &impl Friction<Plain>,
     start: Release<Plain>,
 ) -> Option<Rest<Plain>> {
-    rest(&Path { track, depth: 1.0 }, law, start).unwrap()
+    rest(&Path::new(track, 1.0), law, start).unwrap()
 }
 
 /// Each law alone, and each beside Coulomb's, which those need that act

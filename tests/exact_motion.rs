@@ -399,7 +399,7 @@ fn compare<L: Friction<Plain>>(
         return;
     }
     worst.lifts += motion.legs.iter().filter(|leg| leg.at.lifted).count();
-    let path = Path { track, depth: 1.0 };
+    let path = Path::new(track, 1.0);
     let release = Release { distance: start.0.into(), speed: start.1.into() };
     let mut found = Vec::new();
     sample(&path, law, release, times, false, |s| found.push(s)).unwrap();
@@ -542,8 +542,7 @@ fn fitted_laws_move_as_exact_ones_do() {
     for case in 0..300 {
         let mut rng = Seed::new(15).child(case).rng();
         let track = any_track(&mut rng);
-        let (drag, path) =
-            (any_drag(&mut rng), Path { track: &track, depth: 1.0 });
+        let (drag, path) = (any_drag(&mut rng), Path::new(&track, 1.0));
         let (s, u) = any_start(&mut rng, &track);
         let release = Release { distance: s.into(), speed: u.into() };
         let times = times(&mut rng, 40.0);

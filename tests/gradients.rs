@@ -39,7 +39,7 @@ fn outcome<K: Kind>(
     distance: Real<K>,
     speed: Real<K>,
 ) -> Vec<Real<K>> {
-    let path = Path { track: &problem.track, depth: 1.3 };
+    let path = Path::new(&problem.track, 1.3);
     let start = Release { distance, speed };
     let mut all = Vec::new();
     sample(&path, law, start, &problem.times, false, |s| {
@@ -310,7 +310,8 @@ fn lifting_off_and_landing_carry_gradients() {
     }
     tally.assert_mostly_compared();
     // The mass does lift off there: the bed's friction is gone for a while.
-    let path = Path { track: &hump(), depth: 1.0 };
+    let track = hump();
+    let path = Path::new(&track, 1.0);
     let n = Real::<Plain>::new;
     let law = Sum::new(Coulomb { mu: n(0.3) }, Curvature { c: n(1.0) });
     let start = Release { distance: n(5.0), speed: n(20.0) };
@@ -328,7 +329,7 @@ fn lifting_off_and_landing_carry_gradients() {
 /// 1 m/s, under Voellmy's law; with the distance at the last time.
 fn density(track: &Track, times: &[f64], mu: f64) -> (Real<Grad<2>>, f64) {
     let law = Voellmy { mu: Real::variable(mu, 0), xi: 1000.0.into() };
-    let path = Path { track, depth: 1.0 };
+    let path = Path::new(track, 1.0);
     let start = Release { distance: 0.0.into(), speed: 5.0.into() };
     let (mut total, mut place) = (Real::new(0.0), 0.0);
     sample(&path, &law, start, times, false, |state| {

@@ -250,7 +250,7 @@ fn states(
 ) -> Vec<State<Plain>> {
     let law = Laws::default().parse("coulomb").unwrap();
     let mu = [Real::new(MU)];
-    let path = Path { track, depth: 1.0 };
+    let path = Path::new(track, 1.0);
     let release = Release { distance: 0.0.into(), speed: 1.0.into() };
     let mut states = Vec::new();
     let at = at.into_iter().map(Real::new);

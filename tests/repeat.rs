@@ -7,7 +7,7 @@ use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use couloir::Error;
-use couloir::challenge::{Case, Mix, cases};
+use couloir::challenge::{Case, Errors, Mix, cases};
 use couloir::diagnosis::{attribute, fit, locate};
 use couloir::infer::{Backend, LaplaceMixture, Quiet, Smc};
 use couloir::io::{load, parse_event};
@@ -54,7 +54,7 @@ const FAR: f64 = 10.0;
 #[test]
 fn evidences_repeat_within_a_fifth() {
     for effect in ["friction-patch", "surge", "clock-offset"] {
-        let all = cases(20, 8, Mix::One).unwrap();
+        let all = cases(20, 8, Mix::One, Errors::Simple).unwrap();
         let case = all.iter().find(|c| c.truth.effect == effect).unwrap();
         let model = model_of(case);
         let extent = model.event().extent();
@@ -97,7 +97,7 @@ fn evidences_repeat_within_a_fifth() {
 /// start to climb from: what it says of the patch is what the peaks say.
 #[test]
 fn a_bent_tail_is_not_left_out() {
-    let all = cases(20, 8, Mix::One).unwrap();
+    let all = cases(20, 8, Mix::One, Errors::Simple).unwrap();
     let patched =
         all.iter().find(|c| c.truth.effect == "friction-patch").unwrap();
     let model = model_of(patched);

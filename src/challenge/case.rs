@@ -1,6 +1,7 @@
 //! A case: what is hidden, and what a user would have of it.
 
 use super::effects::Class;
+use super::scatter::Scatter;
 
 /// What places and times are counted in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,14 +41,17 @@ pub struct Truth {
     pub size: f64,
     /// The size's unit; `1` for a number without one.
     pub unit: &'static str,
+    /// What the errors are like.
+    pub scatter: Scatter,
     /// The instrument's standard deviation \[m/s\], as drawn.
     pub noise_sd: f64,
     /// Root mean square of the errors in the recordings \[m/s\].
     pub noise_rms: f64,
     /// By how much the log likelihood of the truth exceeds the greatest that
-    /// the baseline reaches with independent normal errors: about the most
-    /// that a diagnosis can gain, and next to nothing where the recording
-    /// does not show the effect.
+    /// the baseline reaches, with independent normal errors or, of
+    /// [`Errors::Real`](super::Errors::Real), with errors as they were drawn:
+    /// about the most that a diagnosis can gain, and next to nothing where
+    /// the recording does not show the effect.
     pub gain: f64,
 }
 

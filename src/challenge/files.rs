@@ -20,6 +20,8 @@ pub(super) struct Sheet<'a> {
     pub(super) times: &'a [f64],
     /// Speeds \[m/s\].
     pub(super) values: &'a [f64],
+    /// Whether the errors are real ones.
+    pub(super) is_real: bool,
 }
 
 impl Sheet<'_> {
@@ -33,7 +35,8 @@ impl Sheet<'_> {
     }
 
     /// The prior of sigma2 has 90 % of its mass between 0.15 and 0.53 m/s:
-    /// a user knows the instrument to a factor of two.
+    /// a user knows the instrument to a factor of two. Of real errors, which
+    /// depend on one another, what is fresh in each is not known beforehand.
     fn event(&self) -> String {
         let Self { name, release, depth, .. } = self;
         let (friction, xi) = match self.law {
@@ -42,6 +45,11 @@ impl Sheet<'_> {
                 ("voellmy", "xi = \"LogNormal(6.9, 0.7)\"\n")
             }
         };
+        let (noise, sigma2) = if self.is_real {
+            ("ar(1)", "")
+        } else {
+            ("iid", "sigma2 = \"InverseGamma(2, 0.1)\"\n")
+        };
         format!(
             "name = \"{name}\"\n\n\
              [track]\nfile = \"track.csv\"\n\n\
@@ -49,9 +57,8 @@ impl Sheet<'_> {
              [flow]\ndepth = {depth:.2}\n\n\
              [recording]\nfile = \"recording.csv\"\n\
              quantity = \"velocity\"\nwindow = 0.0\n\n\
-             [model]\nfriction = \"{friction}\"\nnoise = \"iid\"\n\n\
-             [priors]\nmu = \"Gamma(9, 0.03)\"\n{xi}\
-             sigma2 = \"InverseGamma(2, 0.1)\"\n"
+             [model]\nfriction = \"{friction}\"\nnoise = \"{noise}\"\n\n\
+             [priors]\nmu = \"Gamma(9, 0.03)\"\n{xi}{sigma2}"
         )
     }
 

@@ -2,6 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
+use super::scatter::Scatter;
 use super::score::{CalibrationBin, EffectScore, Outcome, Score, Share};
 use super::trial::Scored;
 
@@ -21,6 +22,10 @@ pub fn challenge_json(scored: &Scored) -> Value {
         "in_group": s.in_group.value(),
         "detected": s.detected.value(),
         "rmse_within": s.within_noise.value(),
+        "noise_kind": s.noise_kind.value(),
+        "noise_kinds": s.noise_kinds.iter().map(kind).collect::<Map<_, _>>(),
+        "fit_worse": s.worse.value(),
+        "least_squares_worse": s.worse_at_best.value(),
         "visible": {
             "cases": s.in_group_visible.of,
             "top1": s.top1_visible.value(),
@@ -49,7 +54,15 @@ fn errors(s: &Score) -> Value {
         "false_alarm_rate": s.false_alarms.se(),
         "detected": s.detected.se(),
         "rmse_within": s.within_noise.se(),
+        "noise_kind": s.noise_kind.se(),
+        "fit_worse": s.worse.se(),
+        "least_squares_worse": s.worse_at_best.se(),
     })
+}
+
+fn kind((scatter, share): &(Scatter, Share)) -> (String, Value) {
+    let value = json!({"cases": share.of, "right": share.value()});
+    (scatter.name().to_owned(), value)
 }
 
 fn bin(bin: &CalibrationBin) -> Value {
@@ -81,15 +94,20 @@ fn answer(o: &Outcome) -> Value {
         "truth": o.truth.effect,
         "size": o.truth.size,
         "unit": o.truth.unit,
+        "errors": o.truth.scatter.name(),
         "noise_sd": o.truth.noise_sd,
         "gain": o.truth.gain,
         "answer": name,
         "probability": probability,
         "verdict": o.answer.verdict,
+        "noise": o.answer.noises.first().map(|(name, _)| name),
+        "noise_probability": o.answer.noises.first().map(|(_, p)| p),
         "group": o.answer.group,
         "iou": o.overlap(),
         "rmse_before": o.answer.rmse_before,
         "rmse_after": o.answer.rmse_after,
+        "rmse_least_squares_before": o.answer.least_squares_before,
+        "rmse_least_squares_after": o.answer.least_squares_after,
         "seconds": o.answer.seconds,
     })
 }
@@ -117,6 +135,9 @@ mod tests {
         }
         assert_eq!(value["top1"], 1.0);
         assert_eq!(value["false_alarm_rate"], Value::Null);
+        assert_eq!(value["noise_kind"], 1.0);
+        assert_eq!(value["noise_kinds"]["independent"]["cases"], 1);
+        assert_eq!(value["fit_worse"], 0.0);
         assert_eq!(value["confusion"]["surge"]["surge"], 1);
     }
 }

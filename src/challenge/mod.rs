@@ -11,7 +11,9 @@
 
 mod case;
 mod cases;
+mod clock;
 mod effects;
+mod errors;
 mod files;
 mod ground;
 mod json;
@@ -19,6 +21,7 @@ mod moments;
 mod motion;
 mod page;
 mod power;
+mod scatter;
 mod scenery;
 mod score;
 mod trial;
@@ -30,6 +33,7 @@ pub use effects::Class;
 pub use json::challenge_json;
 pub use page::{page, power_page, words};
 pub use power::{PowerTable, mechanisms, power_cases};
+pub use scatter::{Errors, Scatter};
 pub use score::{
     Answer, CalibrationBin, EffectScore, Outcome, OutsideScore, Score, Share,
 };

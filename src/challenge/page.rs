@@ -7,6 +7,7 @@ use maud::{Markup, html};
 use super::case::{Coordinate, Interval, Mix, Truth};
 use super::effects::{CATALOGUE, Class, OUTSIDE};
 use super::power::{PowerTable, percent};
+use super::scatter::Errors;
 use super::score::{
     EffectScore, NONE, Outcome, Score, Share, UNKNOWN, failures,
 };
@@ -50,6 +51,13 @@ pub fn words(scored: &Scored) -> Vec<String> {
         told(&s.within_noise)
     ));
     said.push(format!(
+        "The fit is never worse but in {} by its root mean square error, and \
+         in {} by the least that the motion can have.",
+        told(&s.worse),
+        told(&s.worse_at_best)
+    ));
+    said.push(noises(s));
+    said.push(format!(
         "Stated probabilities miss the share that is right by {} on average \
          (expected calibration error).",
         two(s.expected_calibration_error)
@@ -71,6 +79,22 @@ fn found(s: &Score) -> String {
         told(&s.in_group),
         told(&s.top1),
         told(&s.leads)
+    )
+}
+
+/// How often the most probable noise was like the errors, kind by kind.
+fn noises(s: &Score) -> String {
+    let each: Vec<String> = s
+        .noise_kinds
+        .iter()
+        .map(|(scatter, share)| {
+            format!("{} {} of {}", scatter.name(), share.hits, share.of)
+        })
+        .collect();
+    format!(
+        "The most probable noise is of the errors' kind in {}: {}.",
+        told(&s.noise_kind),
+        each.join(", ")
     )
 }
 
@@ -99,16 +123,21 @@ fn outside(s: &Score) -> Option<String> {
 }
 
 /// `challenge.html`. `seed` is that of the cases.
-pub fn page(scored: &Scored, mix: Mix, seed: u64) -> String {
+pub fn page(scored: &Scored, mix: Mix, errors: Errors, seed: u64) -> String {
     let recordings = match mix {
         Mix::One => "one recording each",
         Mix::Two => "two recordings each, from different starts",
+    };
+    let scattered = match errors {
+        Errors::Simple => "simple errors",
+        Errors::Real => "errors as radars make them, called ar(1) in all",
     };
     let body = html! {
         h1 { "What was hidden, and what was found" }
         p.sub {
             span.synthetic { "synthetic data" } " "
-            (scored.score.cases) " cases, " (recordings) ", seed " (seed)
+            (scored.score.cases) " cases, " (recordings) ", " (scattered)
+            ", seed " (seed)
         }
         ul.words { @for sentence in words(scored) { li { (sentence) } } }
         (figure(&confusion(&scored.score)))
@@ -378,12 +407,13 @@ mod tests {
 
     #[test]
     fn the_page_shows_names_counts_and_failures() {
-        let html = page(&some(), Mix::One, 7);
+        let html = page(&some(), Mix::One, Errors::Real, 7);
         for part in [
             "id=\"confusion\"",
             "id=\"calibration\"",
             ">friction-patch</text>",
             "friction-patch of 0.25, 100 to 150 m",
+            "called ar(1) in all",
             "seed 7",
         ] {
             assert!(html.contains(part), "{part}");
@@ -396,7 +426,9 @@ mod tests {
         let mut outcomes = some().outcomes;
         outcomes[1].answer = Default::default();
         let score = Score::of(&outcomes);
-        assert!(page(&Scored { outcomes, score }, Mix::Two, 1).len() > 1000);
+        let scored = Scored { outcomes, score };
+        let html = page(&scored, Mix::Two, Errors::Simple, 1);
+        assert!(html.len() > 1000);
         assert!(power_page(&[], 1).contains("What each effect needs"));
     }
 }

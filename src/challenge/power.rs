@@ -40,7 +40,13 @@ pub fn power_cases(
             for k in 0..count {
                 let sign = if kind.signed && k % 2 == 1 { -1.0 } else { 1.0 };
                 let size = Some(sign * fraction * kind.range.1);
-                let order = Order { kind, size, sd: Some(*sd), mix: Mix::One };
+                let order = Order {
+                    kind,
+                    size,
+                    sd: Some(*sd),
+                    mix: Mix::One,
+                    scatter: None,
+                };
                 let name = format!("power-{:04}", cases.len() + 1);
                 let seed = branch(seed, kind)
                     .child(0x9_0e5)

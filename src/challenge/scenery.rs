@@ -5,21 +5,22 @@ use rand::RngExt;
 use rand_distr::{Distribution, Gamma, LogNormal};
 
 use super::case::{Case, Coordinate, Interval, Mix, Recording, Truth};
+use super::clock::{Clock, Rates};
 use super::effects::{Effect, Kind, Nothing, Scene, Stretch, Void};
+use super::errors::Instrument;
 use super::files;
 use super::ground::{Ground, Shape};
 use super::moments::{Run, Start};
 use super::motion::{Law, STEP, slide};
-use super::visible::{Shown, baseline};
+use super::scatter::{Errors, Scatter};
+use super::visible::{Shown, baseline, baseline_under};
 use crate::error::{Error, Result};
 use crate::seed::{Rng, Seed};
 
-/// Fewest and most values of a recording.
-pub(super) const VALUES: (usize, usize) = (60, 200);
-/// Least and greatest time between values \[s/100\]: 10 to 4 per second.
-const CENTISECONDS: (u32, u32) = (10, 25);
-/// The instrument's standard deviation \[m/s\].
+/// The instrument's standard deviation \[m/s\]; of real errors, which differ
+/// more from place to place.
 const NOISE: (f64, f64) = (0.2, 0.4);
+const REAL_NOISE: (f64, f64) = (0.1, 0.5);
 /// The least friction coefficient that may act.
 const LEAST_MU: f64 = 0.02;
 /// How often a ground is drawn for an effect before there is none.
@@ -44,6 +45,22 @@ pub(super) struct Order {
     /// The noise \[m/s\]; drawn where not given.
     pub(super) sd: Option<f64>,
     pub(super) mix: Mix,
+    /// What real errors are like; the effect's own where not given.
+    pub(super) scatter: Option<Scatter>,
+}
+
+impl Order {
+    fn errors(&self) -> Errors {
+        self.scatter.map_or(Errors::Simple, |_| Errors::Real)
+    }
+
+    /// From what to what the standard deviation is drawn \[m/s\].
+    fn noise(&self) -> (f64, f64) {
+        match self.errors() {
+            Errors::Simple => NOISE,
+            Errors::Real => REAL_NOISE,
+        }
+    }
 }
 
 /// Draws a case. The size comes first and is kept: no effect is drawn again
@@ -52,12 +69,21 @@ pub(super) fn draw(order: &Order, name: &str, seed: Seed) -> Result<Case> {
     let mut rng = seed.child(0).rng();
     let drawn = [order.kind.size(&mut rng), order.kind.size(&mut rng)];
     let sizes = order.size.map_or(drawn, |size| [size; 2]);
-    let noise: f64 = rng.random_range(NOISE.0..NOISE.1);
+    let (least, most) = order.noise();
+    let noise: f64 = rng.random_range(least..most);
     let sd = order.sd.unwrap_or(noise);
+    let draw = |scatter| Instrument::draw(scatter, sd, &mut rng);
+    let instrument = order.scatter.map(draw);
     for attempt in 1..=TRIES {
         let seed = seed.child(attempt);
         if let Some(scenery) = Scenery::draw(order, sizes, seed)
-            && let Some(case) = scenery.record(order, sizes[0], sd, name, seed)
+            && let Some(case) = scenery.record(
+                order,
+                sizes[0],
+                Noise { sd, instrument, ..Noise::default() },
+                name,
+                seed,
+            )
         {
             return Ok(case);
         }
@@ -66,49 +92,6 @@ pub(super) fn draw(order: &Order, name: &str, seed: Seed) -> Result<Case> {
         "{name}: no ground was found for {} of {}",
         order.kind.name, sizes[0]
     )))
-}
-
-/// When a recording has its values: `count` of them, `step` apart.
-#[derive(Debug, Clone, Copy)]
-struct Clock {
-    step: f64,
-    count: usize,
-}
-
-impl Clock {
-    fn draw(rng: &mut Rng) -> Self {
-        let (low, high) = CENTISECONDS;
-        let step = f64::from(rng.random_range(low..=high)) / 100.0;
-        Self { step, count: rng.random_range(VALUES.0..=VALUES.1) }
-    }
-
-    /// The times \[s\].
-    fn times(&self) -> impl Iterator<Item = f64> + use<> {
-        let Self { step, count } = *self;
-        // In hundredths, as the file has them.
-        let at = move |i| (i as f64 * step * 100.0).round() / 100.0;
-        (1..=count).map(at)
-    }
-
-    fn duration(&self) -> f64 {
-        self.step * self.count as f64
-    }
-
-    /// The same within so many seconds: fewer values, then denser ones;
-    /// nothing where that is not enough.
-    fn within(self, seconds: f64) -> Option<Self> {
-        let fits = |step: f64| (seconds / step + 1e-9).floor() as usize;
-        let count = self.count.min(fits(self.step));
-        if count >= VALUES.0 {
-            return Some(Self { count, ..self });
-        }
-        let densest = f64::from(CENTISECONDS.0);
-        let step = (100.0 * seconds / VALUES.0 as f64).floor();
-        (step >= densest).then(|| {
-            let step = step / 100.0;
-            Self { step, count: fits(step).min(VALUES.1) }
-        })
-    }
 }
 
 /// Ground, law, effect and motion of a case that is possible.
@@ -151,7 +134,8 @@ impl Stage {
             .take(order.mix.recordings())
             .map(|x| (x * 10.0).round() / 10.0)
             .collect::<Vec<_>>();
-        let plans = releases.iter().map(|_| Clock::draw(rng)).collect();
+        let rates = Rates::of(order.errors());
+        let plans = releases.iter().map(|_| Clock::draw(rates, rng)).collect();
         let tail = rng.random_range(0.0..1.5);
         Some(Self { ground, law, depth, releases, plans, tail })
     }
@@ -296,13 +280,12 @@ impl Scenery {
         &self,
         order: &Order,
         size: f64,
-        sd: f64,
+        mut noise: Noise,
         name: &str,
         seed: Seed,
     ) -> Option<Case> {
         let mut rng = seed.child(2).rng();
         let (mut recordings, mut shown) = (Vec::new(), Vec::new());
-        let mut noise = Noise { sd, ..Noise::default() };
         for which in 0..self.runs.len() {
             let one = self.read(which, &mut noise, &mut rng);
             let room = self.survey.length() - one.from;
@@ -318,12 +301,13 @@ impl Scenery {
                 law: &self.law,
                 times: &one.times,
                 values: &one.values,
+                is_real: noise.instrument.is_some(),
             };
             let files = sheet.files();
             recordings.push(Recording { folder, files });
             shown.push(one);
         }
-        let best = baseline(&self.survey, &self.law, &shown);
+        let best = noise.best(&self.survey, &self.law, &shown);
         let truth = self.truth(order.kind, size, &noise, best);
         Some(Case { name: name.to_owned(), truth, recordings })
     }
@@ -334,8 +318,7 @@ impl Scenery {
         let times: Vec<f64> = clock.times().collect();
         let read = |t: &f64| self.effect.read(run, *t, which);
         let clean: Vec<f64> = times.iter().map(read).collect();
-        let errors = self.effect.noise(noise.sd, &clean, rng);
-        noise.note(&*self.effect, &errors, &clean);
+        let errors = noise.draw(&*self.effect, &times, &clean, rng);
         let pairs = clean.iter().zip(&errors);
         let values = pairs.map(|(v, e)| v + e).collect();
         let from = self.survey.along(self.releases[which]);
@@ -356,6 +339,7 @@ impl Scenery {
             interval: self.interval(),
             size,
             unit: kind.unit,
+            scatter: noise.scatter(kind),
             noise_sd: noise.sd,
             noise_rms: (noise.squares / noise.count as f64).sqrt(),
             gain: noise.log_density - best,
@@ -393,6 +377,8 @@ impl Scenery {
 struct Noise {
     /// The instrument's standard deviation \[m/s\].
     sd: f64,
+    /// What makes real errors.
+    instrument: Option<Instrument>,
     /// The sum of squares \[m2/s2\].
     squares: f64,
     count: usize,
@@ -400,10 +386,41 @@ struct Noise {
 }
 
 impl Noise {
-    fn note(&mut self, effect: &dyn Effect, errors: &[f64], values: &[f64]) {
+    /// The errors of one recording, which are noted.
+    fn draw(
+        &mut self,
+        effect: &dyn Effect,
+        times: &[f64],
+        values: &[f64],
+        rng: &mut Rng,
+    ) -> Vec<f64> {
+        let (errors, log_density) = if let Some(real) = self.instrument {
+            let recorder = real.at(times);
+            let errors = recorder.draw(rng);
+            let log_density = recorder.log_density(&errors);
+            (errors, log_density)
+        } else {
+            let errors = effect.noise(self.sd, values, rng);
+            let log_density = effect.log_density(self.sd, &errors, values);
+            (errors, log_density)
+        };
         self.squares += errors.iter().map(|e| e * e).sum::<f64>();
         self.count += errors.len();
-        self.log_density += effect.log_density(self.sd, errors, values);
+        self.log_density += log_density;
+        errors
+    }
+
+    /// The greatest log likelihood that the baseline reaches.
+    fn best(&self, ground: &Ground, law: &Law, all: &[Shown]) -> f64 {
+        match self.instrument {
+            None => baseline(ground, law, all),
+            Some(real) => baseline_under(ground, law, all, real),
+        }
+    }
+
+    fn scatter(&self, kind: &Kind) -> Scatter {
+        let of_effect = Scatter::of_effect(kind.name);
+        self.instrument.map_or(of_effect, |real| real.scatter)
     }
 }
 

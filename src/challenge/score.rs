@@ -4,11 +4,14 @@ use std::collections::BTreeMap;
 
 use super::case::{Coordinate, Interval, Truth};
 use super::effects::{CATALOGUE, Class};
+use super::scatter::Scatter;
 use crate::draws;
 
 /// The word for nothing hidden, and the verdict that says so.
 pub(super) const NONE: &str = "none";
 const ADEQUATE: &str = "adequate";
+/// The verdict that the errors are not as the event's file says.
+const ERRORS: &str = "noise";
 /// The name of what the catalogue does not explain.
 pub(super) const UNKNOWN: &str = "unknown";
 /// Effects that one recording hardly tells from a moved clock or another mu:
@@ -20,6 +23,8 @@ const WITHIN: f64 = 1.15;
 /// the prior odds of a name against `none`, and 5 for its parameters, which a
 /// diagnosis does not know beforehand.
 const VISIBLE: f64 = 8.0;
+/// What rounding may add to an error, as a share of it.
+const ROUNDING: f64 = 1e-9;
 /// How many bins calibration is measured in.
 const BINS: usize = 5;
 
@@ -42,6 +47,11 @@ pub struct Answer {
     pub rmse_before: f64,
     /// The same with what was found \[m/s\].
     pub rmse_after: f64,
+    /// The least error that the baseline's motion can have \[m/s\]; NaN where
+    /// unknown.
+    pub least_squares_before: f64,
+    /// The same with what was found \[m/s\].
+    pub least_squares_after: f64,
     /// The same on the stretch that was held out \[m/s\]; NaN where unknown.
     pub heldout_rmse_after: f64,
     /// Wall-clock time \[s\].
@@ -66,19 +76,6 @@ impl Answer {
     }
 }
 
-/// Whether a noise is what an effect on the errors makes of independent ones.
-fn is_made_by(noise: &str, effect: &str) -> bool {
-    let mut blocks = noise.split('+').map(str::trim);
-    let remembers =
-        |block: &str| !["white", "iid", "tails", "growth"].contains(&block);
-    match effect {
-        "ar1" => blocks.any(remembers),
-        "heavy-tails" => blocks.any(|b| b == "tails" || b == "student"),
-        "unequal-variance" => blocks.any(|b| b == "growth"),
-        _ => false,
-    }
-}
-
 /// A case with its answer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
@@ -95,10 +92,7 @@ impl Outcome {
     /// most probable noise is like it.
     pub fn first(&self) -> bool {
         match self.truth.class {
-            Class::Errors => {
-                let first = self.answer.noises.first();
-                first.is_some_and(|(n, _)| is_made_by(n, self.truth.effect))
-            }
+            Class::Errors => self.names_errors(),
             _ => self.answer.top().0 == self.truth.effect,
         }
     }
@@ -117,14 +111,40 @@ impl Outcome {
     pub fn in_group(&self) -> bool {
         if self.truth.class == Class::Errors {
             let mut near = self.answer.near_noises();
-            return near.any(|noise| is_made_by(noise, self.truth.effect));
+            return near.any(|noise| self.truth.scatter.is_named_by(noise));
         }
         self.answer.group.iter().any(|name| name == self.truth.effect)
     }
 
-    /// Whether anything was found.
+    /// Whether anything was found. Where the errors are not as the event's
+    /// file says and that is not what is hidden, to say so is right, and
+    /// finds nothing.
     pub fn detected(&self) -> bool {
-        self.answer.verdict != ADEQUATE
+        let beside = self.truth.class != Class::Errors
+            && self.truth.scatter != Scatter::Independent;
+        match self.answer.verdict.as_str() {
+            ADEQUATE => false,
+            ERRORS => !beside,
+            _ => true,
+        }
+    }
+
+    /// Whether the most probable noise is of the errors' kind.
+    pub fn names_errors(&self) -> bool {
+        let first = self.answer.noises.first();
+        first.is_some_and(|(noise, _)| self.truth.scatter.is_named_by(noise))
+    }
+
+    /// Whether the posterior mean prediction got worse.
+    pub fn worse(&self) -> bool {
+        is_worse(self.answer.rmse_before, self.answer.rmse_after)
+    }
+
+    /// Whether the least error of the motion did.
+    pub fn worse_at_best(&self) -> bool {
+        let Answer { least_squares_before, least_squares_after, .. } =
+            self.answer;
+        is_worse(least_squares_before, least_squares_after)
     }
 
     /// Whether the recording shows enough of the effect for it to come first.
@@ -161,6 +181,10 @@ impl Outcome {
         let holds = held.is_nan() || held <= 1.5 * self.truth.noise_rms;
         self.answer.top().0 == UNKNOWN || (self.within_noise() && holds)
     }
+}
+
+fn is_worse(before: f64, after: f64) -> bool {
+    after > before * (1.0 + ROUNDING)
 }
 
 fn asks_group(truth: &Truth) -> bool {
@@ -301,6 +325,15 @@ pub struct Score {
     pub expected_calibration_error: f64,
     /// What it is made of.
     pub bins: Vec<CalibrationBin>,
+    /// The most probable noise is of the errors' kind: all cases.
+    pub noise_kind: Share,
+    /// The same for each kind of errors there was, in their order.
+    pub noise_kinds: Vec<(Scatter, Share)>,
+    /// The posterior mean prediction is further from the recording than
+    /// before: all cases.
+    pub worse: Share,
+    /// The least error of the motion is greater than before: all cases.
+    pub worse_at_best: Share,
     /// The median overlap of located and true stretch; NaN of none.
     pub median_iou: f64,
     /// For each truth, how often each name was the most probable.
@@ -338,6 +371,14 @@ impl Score {
             false_alarms: Share::count(none().map(Outcome::detected)),
             detected: Share::count(hidden().map(Outcome::detected)),
             within_noise: Share::count(hidden().map(Outcome::within_noise)),
+            noise_kind: Share::count(
+                outcomes.iter().map(Outcome::names_errors),
+            ),
+            noise_kinds: noise_kinds(outcomes),
+            worse: Share::count(outcomes.iter().map(Outcome::worse)),
+            worse_at_best: Share::count(
+                outcomes.iter().map(Outcome::worse_at_best),
+            ),
             expected_calibration_error: bins.iter().map(gap).sum(),
             bins,
             median_iou: median(hidden().filter_map(Outcome::overlap))
@@ -399,6 +440,16 @@ fn bins(outcomes: &[Outcome]) -> Vec<CalibrationBin> {
         bin.weight /= total;
     }
     bins
+}
+
+/// How often each kind of errors was named.
+fn noise_kinds(outcomes: &[Outcome]) -> Vec<(Scatter, Share)> {
+    let of = |scatter: Scatter| {
+        let own = outcomes.iter().filter(|o| o.truth.scatter == scatter);
+        (scatter, Share::count(own.map(Outcome::names_errors)))
+    };
+    let all = Scatter::ALL.into_iter().map(of);
+    all.filter(|(_, share)| share.of > 0).collect()
 }
 
 fn confusion(

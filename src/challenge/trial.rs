@@ -26,14 +26,14 @@ pub struct Scored {
 /// the other, for a diagnosis that uses all processors itself.
 ///
 /// ```
-/// use couloir::challenge::{Answer, Mix, cases, run};
+/// use couloir::challenge::{Answer, Errors, Mix, cases, run};
 /// use couloir::infer::Quiet;
 /// let diagnose = |_: &_| Ok(Answer {
 ///     verdict: "adequate".into(),
 ///     probabilities: vec![("none".into(), 1.0)],
 ///     ..Answer::default()
 /// });
-/// let some = cases(2, 1, Mix::One)?;
+/// let some = cases(2, 1, Mix::One, Errors::Simple)?;
 /// let scored = run(&some, &diagnose, false, &Quiet)?;
 /// assert_eq!(scored.score.false_alarms.hits, 0);
 /// # Ok::<(), couloir::Error>(())

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::effects::Nothing;
+use super::errors::Instrument;
 use super::ground::Ground;
 use super::moments::Start;
 use super::motion::{Law, slide};
@@ -24,31 +25,54 @@ pub(super) struct Shown {
 /// The greatest log likelihood that the baseline reaches, over its friction
 /// parameters and the variance of independent normal errors.
 pub(super) fn baseline(ground: &Ground, law: &Law, all: &[Shown]) -> f64 {
+    let squares = |law: &Law| -> f64 {
+        let misfit = |e: Vec<f64>| e.iter().map(|e| e * e).sum::<f64>();
+        all.iter().map(|shown| misfit(left(ground, law, shown))).sum()
+    };
+    let least = least(law, &squares);
+    let count: usize = all.iter().map(|shown| shown.values.len()).sum();
+    let n = count as f64;
+    -0.5 * n * ((TAU * least / n).ln() + 1.0)
+}
+
+/// The same over its friction parameters alone, with errors as they were
+/// drawn.
+pub(super) fn baseline_under(
+    ground: &Ground,
+    law: &Law,
+    all: &[Shown],
+    real: Instrument,
+) -> f64 {
+    let recorders: Vec<_> = all.iter().map(|s| real.at(&s.times)).collect();
+    let lacking = |law: &Law| -> f64 {
+        let pairs = all.iter().zip(&recorders);
+        pairs.map(|(s, r)| -r.log_density(&left(ground, law, s))).sum()
+    };
+    -least(law, &lacking)
+}
+
+/// The least value over a law's parameters.
+fn least(law: &Law, of: &impl Fn(&Law) -> f64) -> f64 {
     let with = |p: [f64; 2]| match *law {
         Law::Coulomb { .. } => Law::Coulomb { mu: p[0].abs() },
         Law::Voellmy { depth, .. } => {
             Law::Voellmy { mu: p[0].abs(), xi: p[1].exp(), depth }
         }
     };
-    let squares = |p: [f64; 2]| -> f64 {
-        all.iter().map(|shown| misfit(ground, &with(p), shown)).sum()
-    };
-    let least = match law {
-        Law::Coulomb { .. } => search(&squares, [0.05, 0.0]),
-        Law::Voellmy { .. } => search(&squares, [0.05, 0.5]),
-    };
-    let count: usize = all.iter().map(|shown| shown.values.len()).sum();
-    let n = count as f64;
-    -0.5 * n * ((TAU * least / n).ln() + 1.0)
+    let of = |p: [f64; 2]| of(&with(p));
+    match law {
+        Law::Coulomb { .. } => search(&of, [0.05, 0.0]),
+        Law::Voellmy { .. } => search(&of, [0.05, 0.5]),
+    }
 }
 
-/// The sum of squares \[m2/s2\] between a motion and a recording.
-fn misfit(ground: &Ground, law: &Law, shown: &Shown) -> f64 {
+/// What a motion leaves of a recording \[m/s\].
+fn left(ground: &Ground, law: &Law, shown: &Shown) -> Vec<f64> {
     let start = Start { place: shown.from, speed: 0.0 };
     let until = shown.times.iter().copied().fold(0.0, f64::max) + STEP;
     let run = slide(ground, law, &Nothing, start, until, STEP);
     let pairs = shown.times.iter().zip(&shown.values);
-    pairs.map(|(t, v)| (run.speed(*t) - v).powi(2)).sum()
+    pairs.map(|(t, v)| v - run.speed(*t)).collect()
 }
 
 /// The eight ways from a place; the first two leave ln xi as it is.

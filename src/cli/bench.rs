@@ -45,7 +45,7 @@ impl Row {
 
 impl Arguments {
     pub(super) fn run(&self, laws: &Laws) -> Result<String> {
-        let model = self.subject.model(laws)?;
+        let model = self.subject.named(laws)?;
         let posterior = Posterior::new(&model)?;
         let told = Told::new();
         let mut rows = Vec::new();
@@ -85,7 +85,7 @@ impl Arguments {
                     }),
                     "mode_log_density":
                         row.found.mode.as_ref().map(|m| m.log_density),
-                    "warnings": row.found.warnings,
+                    "warnings": warnings(row),
                 })
             })
             .collect();
@@ -96,6 +96,10 @@ impl Arguments {
             "backends": backends,
         })
     }
+}
+
+fn warnings(row: &Row) -> Vec<&String> {
+    row.found.warnings.iter().chain(&row.found.hints).collect()
 }
 
 fn row(name: &'static str, found: Inference) -> Row {
@@ -163,7 +167,7 @@ fn tell(title: &str, rows: &[Row]) -> String {
     }
     text.push('\n');
     for row in rows {
-        for warning in &row.found.warnings {
+        for warning in warnings(row) {
             let line = format!("Warning, {}: {warning}", row.name);
             text.push_str(&wrapped(&line, width()));
         }

@@ -2,37 +2,50 @@
 
 use clap::Args;
 
+use super::answer::{Answer, Strict};
 use super::progress::Told;
+use super::study::Read;
+use super::thin::Thin;
 use super::{Output, Subject, Work, backend_name, width, written};
-use crate::calibrate::{Calibration, calibrate};
+use crate::averaged::{Open, calibrate_open};
+use crate::calibrate::Calibration;
 use crate::error::Result;
-use crate::infer::backend;
+use crate::infer::{Suited, backend, suited};
 use crate::io::write_all;
 use crate::physics::friction::Laws;
-use crate::report::{calibration_json, in_words, page, picture, table};
+use crate::report::{
+    calibration_json, in_words, noises, page, picture, table,
+};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     subject: Subject,
     #[command(flatten)]
+    thin: Thin,
+    #[command(flatten)]
     work: Work,
     /// Backend: mh, random-walk, nuts (where built with it), smc, importance,
-    /// laplace-mixture, bridge or reciprocal
-    #[arg(long, default_value = "mh", value_parser = backend_name)]
-    backend: String,
+    /// laplace-mixture, bridge or reciprocal; where not given, mh, or
+    /// laplace-mixture for an event with mechanisms, which may have several
+    /// modes
+    #[arg(long, value_parser = backend_name)]
+    backend: Option<String>,
+    /// Say what is known of the law's parameters when the rest of the physics
+    /// is left open, too: with a force of free form in the model
+    #[arg(long)]
+    rest: bool,
+    #[command(flatten)]
+    strict: Strict,
     #[command(flatten)]
     output: Output,
 }
 
 impl Arguments {
-    pub(super) fn run(&self, laws: &Laws) -> Result<String> {
-        let model = self.subject.model(laws)?;
-        let backend = backend(&self.backend, &self.work.effort()?)?;
-        let told = Told::new();
-        let found =
-            calibrate(&model, backend.as_ref(), self.work.seed, &told)?;
-        drop(told);
+    pub(super) fn run(&self, laws: &Laws) -> Result<Answer> {
+        let subject =
+            Subject { thin: self.thin.clone(), ..self.subject.clone() };
+        let found = self.found(subject.read(laws)?)?;
         let json = pretty(&calibration_json(&found.report));
         if let Some(folder) = &self.output.out {
             let files = [
@@ -42,10 +55,29 @@ impl Arguments {
             ];
             write_all(folder, &files)?;
         }
-        if self.output.json {
-            return Ok(json);
-        }
-        Ok(self.tell(&found))
+        let text = if self.output.json { json } else { self.tell(&found) };
+        Ok(self.strict.answer(text, &found.report.doubts))
+    }
+
+    fn found(&self, read: Read) -> Result<Calibration> {
+        let Read { model, infers_noise, thinned } = read;
+        let effort = self.work.effort()?;
+        let (backend, why) = match &self.backend {
+            Some(name) => (backend(name, &effort)?, None),
+            None => {
+                let Suited { backend, why } =
+                    suited(&model, infers_noise, &effort)?;
+                (backend, Some(why.to_owned()))
+            }
+        };
+        let mut open = Open::default();
+        (open.noise, open.rest) = (infers_noise, self.rest);
+        let (told, seed) = (Told::new(), self.work.seed);
+        let mut found =
+            calibrate_open(&model, open, backend.as_ref(), seed, &told)?;
+        found.report.backend_why = why;
+        found.report.notes = thinned;
+        Ok(found)
     }
 
     fn tell(&self, found: &Calibration) -> String {
@@ -55,14 +87,24 @@ impl Arguments {
         text.push('\n');
         text.push_str(&table(&found.report, width));
         text.push('\n');
+        let noises = noises(&found.report, width);
+        if !noises.is_empty() {
+            text.push_str(&noises);
+            text.push('\n');
+        }
         for sentence in in_words(&found.report) {
             text.push_str(&wrapped(&sentence, width));
         }
         let report = &found.report;
-        text.push_str(&format!(
-            "\n{}: {} simulations, {:.2} s, seed {}\n",
-            report.backend, report.simulations, report.seconds, report.seed
-        ));
+        let run = format!(
+            "{}: {} simulations, {:.2} s, seed {}",
+            report.backend_told(),
+            report.simulations,
+            report.seconds,
+            report.seed
+        );
+        text.push('\n');
+        text.push_str(&wrapped(&run, width));
         let files = ["report.html", "calibration.json", "draws.csv"];
         text.push_str(&written(self.output.out.as_deref(), &files));
         text

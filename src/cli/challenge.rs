@@ -10,7 +10,7 @@ use super::progress::Told;
 use super::study::assemble;
 use super::{at_least_one, folder, width, written};
 use crate::challenge::{
-    Answer, Case, Coordinate, Interval, Mix, PowerTable, cases,
+    Answer, Case, Coordinate, Errors, Interval, Mix, PowerTable, cases,
     challenge_json, page, power_cases, power_page, run, words,
 };
 use crate::diagnosis::{
@@ -35,6 +35,12 @@ pub(super) struct Arguments {
     /// How many recordings, from different starts, share an effect: 1 or 2
     #[arg(long, default_value_t = 1, value_parser = one_or_two)]
     recordings: usize,
+    /// Errors in the recordings: simple, independent and normal as the events
+    /// say; or real, smooth, drifting, correlated, with outliers or growing,
+    /// while the events say ar(1)
+    #[arg(long, value_name = "simple|real", default_value = "simple",
+          value_parser = errors, conflicts_with = "power")]
+    errors: Errors,
     /// Study instead what size of this mechanism is seen in what noise
     #[arg(long, value_name = "MECHANISM")]
     power: Option<String>,
@@ -64,7 +70,7 @@ impl Arguments {
     }
 
     fn score(&self) -> Result<String> {
-        let all = cases(self.cases, self.seed, self.mix())?;
+        let all = cases(self.cases, self.seed, self.mix(), self.errors)?;
         let told = Told::new();
         let seed = self.seed;
         let scored = run(&all, &|case| answer(case, seed), true, &told)?;
@@ -73,7 +79,10 @@ impl Arguments {
         if let Some(folder) = &self.out {
             let files = [
                 ("challenge.json", json.clone()),
-                ("challenge.html", page(&scored, self.mix(), self.seed)),
+                (
+                    "challenge.html",
+                    page(&scored, self.mix(), self.errors, self.seed),
+                ),
             ];
             write_all(folder, &files)?;
         }
@@ -109,6 +118,11 @@ fn one_or_two(text: &str) -> Result<usize, String> {
         Ok(n @ 1..=2) => Ok(n),
         _ => Err("expected 1 or 2".into()),
     }
+}
+
+fn errors(text: &str) -> Result<Errors, String> {
+    let expected = || format!("expected {}", Errors::NAMES.join(" or "));
+    Errors::named(text).ok_or_else(expected)
 }
 
 /// What the diagnosis says of a case, from its recordings alone.
@@ -180,6 +194,8 @@ fn answer_of(found: &Diagnosis) -> Answer {
             .collect(),
         rmse_before: found.improvement.rmse.before,
         rmse_after: found.improvement.rmse.after,
+        least_squares_before: found.improvement.least_squares.before,
+        least_squares_after: found.improvement.least_squares.after,
         heldout_rmse_after: found.improvement.heldout_rmse.after,
         seconds: found.seconds,
     }

@@ -147,7 +147,7 @@ impl Arguments {
             loo,
             lfo,
             simulations: found.cost.simulations,
-            warnings: found.warnings,
+            warnings: [found.warnings, found.hints].concat(),
         })
     }
 

@@ -5,8 +5,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::answer::{Answer, Strict};
 use super::calibrate::pretty;
 use super::progress::Told;
+use super::study::Read;
+use super::thin::Thin;
 use super::{Output, Subject, width, written};
 use crate::diagnosis::{
     Diagnosis, Odds, Options, Sharing, Together, diagnose, diagnose_together,
@@ -27,7 +30,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "LAW")]
     friction: Option<String>,
     /// Noise instead of the event's: iid, ar(k), student, or one or a sum of
-    /// white, ou, matern32, ar(k), tails, growth, such as "matern32 + white"
+    /// white, ou, matern32, ar(k), tails, growth, such as "matern32 + white";
+    /// or infer: whichever is likely, none of them preferred
     #[arg(long, value_name = "NOISE")]
     noise: Option<String>,
     /// Prior odds of a mechanism against 1 for each other, such as
@@ -40,9 +44,17 @@ pub(super) struct Arguments {
     /// Let the amount of what is missing differ from event to event
     #[arg(long)]
     pooled: bool,
+    #[command(flatten)]
+    thin: Thin,
+    /// Diagnose again at half the recordings' rate, and warn where that
+    /// changes verdict or group; takes twice the time
+    #[arg(long)]
+    check_rate: bool,
     /// Seed of every random draw
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    #[command(flatten)]
+    strict: Strict,
     #[command(flatten)]
     output: Output,
 }
@@ -65,14 +77,10 @@ const CORRECTED: &str = "corrected";
 type Files = Vec<(PathBuf, String)>;
 
 impl Arguments {
-    pub(super) fn run(&self, laws: &Laws) -> Result<String> {
-        let subjects = self.subjects();
-        let models = subjects
-            .iter()
-            .map(|event| event.model(laws))
-            .collect::<Result<Vec<_>>>()?;
+    pub(super) fn run(&self, laws: &Laws) -> Result<Answer> {
+        let subjects = self.subjects(&self.thin);
         let told = Told::new();
-        let (found, labels) = self.diagnose(models, &told)?;
+        let (found, labels) = self.found(&subjects, laws, &told)?;
         drop(told);
         let mut names =
             vec!["report.html", "diagnosis.json", "draws.csv", "pictures/"];
@@ -90,7 +98,8 @@ impl Arguments {
             write_all(folder, &files)?;
         }
         if self.output.json {
-            return Ok(pretty(&found.json()));
+            let json = pretty(&found.json());
+            return Ok(self.strict.answer(json, &found.doubts));
         }
         let mut text = summary(&found, width());
         text.push_str(&written(self.output.out.as_deref(), &names));
@@ -98,17 +107,41 @@ impl Arguments {
             let old = old.display();
             text.push_str(&format!("{old}: of an earlier diagnosis\n"));
         }
-        Ok(text)
+        Ok(self.strict.answer(text, &found.doubts))
+    }
+
+    /// The diagnosis of the events and, where that was asked for, what
+    /// another at half the rate makes of it.
+    fn found(
+        &self,
+        subjects: &[Subject],
+        laws: &Laws,
+        told: &Told,
+    ) -> Result<(Diagnosis, Vec<String>)> {
+        let read = read_all(subjects, laws)?;
+        // Looked at before the work and not after.
+        let halved = self.subjects(&self.thin.halved());
+        let halved =
+            self.check_rate.then(|| read_all(&halved, laws)).transpose()?;
+        let said = read.iter().flat_map(|one| one.thinned.clone()).collect();
+        let (mut found, labels) = self.diagnose(read, told)?;
+        found.notes = said;
+        if let Some(read) = halved {
+            let (again, _) = self.diagnose(read, told)?;
+            found.check_rate(&again);
+        }
+        Ok((found, labels))
     }
 
     /// Each event with what the command line changes of it.
-    fn subjects(&self) -> Vec<Subject> {
+    fn subjects(&self, thin: &Thin) -> Vec<Subject> {
         let of = |event: Option<PathBuf>| Subject {
             friction: self
                 .friction
                 .clone()
                 .or_else(|| event.is_none().then(|| "coulomb".to_owned())),
             noise: self.noise.clone(),
+            thin: thin.clone(),
             event,
         };
         if self.events.is_empty() {
@@ -120,9 +153,12 @@ impl Arguments {
     /// The diagnosis, and what each of several events is called by.
     fn diagnose(
         &self,
-        mut models: Vec<Assembled>,
+        read: Vec<Read>,
         told: &Told,
     ) -> Result<(Diagnosis, Vec<String>)> {
+        let infers_noise = read.iter().all(|one| one.infers_noise);
+        let mut models: Vec<Assembled> =
+            read.into_iter().map(|one| one.model).collect();
         let odds = || self.odds.iter().cloned().collect::<Odds>();
         if models.len() > 1 {
             let together = match self.one_law {
@@ -130,7 +166,7 @@ impl Arguments {
                 false => Together::new(models)?,
             };
             let mut options = Options::of_all(&together, self.seed);
-            options.odds = odds();
+            (options.odds, options.infers_noise) = (odds(), infers_noise);
             let sharing =
                 if self.pooled { Sharing::Pooled } else { Sharing::Shared };
             let found = diagnose_together(&together, sharing, &options, told)?;
@@ -139,10 +175,14 @@ impl Arguments {
         let model =
             models.pop().ok_or_else(|| Error::input("no event was given"))?;
         let mut options = Options::of(&model, self.seed);
-        options.odds = odds();
+        (options.odds, options.infers_noise) = (odds(), infers_noise);
         let found = diagnose(&model, model.event(), &options, told)?;
         Ok((found, Vec::new()))
     }
+}
+
+fn read_all(subjects: &[Subject], laws: &Laws) -> Result<Vec<Read>> {
+    subjects.iter().map(|event| event.read(laws)).collect()
 }
 
 fn reports(found: &Diagnosis) -> Files {

@@ -3,6 +3,7 @@
 //! Nothing below this folder prints. A user's own binary offers its own laws
 //! through [`main_with`].
 
+mod answer;
 mod bench;
 mod calibrate;
 mod challenge;
@@ -14,12 +15,15 @@ mod progress;
 mod reproduce;
 mod simulate;
 mod study;
+mod thin;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 
+use self::answer::Answer;
+use self::thin::Thin;
 use crate::error::{Error, Result};
 use crate::infer::{Effort, backend};
 use crate::physics::friction::Laws;
@@ -53,7 +57,7 @@ enum Command {
 }
 
 /// Which event, and what to change of its model.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 struct Subject {
     /// Event folder, or its event.toml; a passenger car coasting uphill, a
     /// real recording, where none is given
@@ -62,9 +66,13 @@ struct Subject {
     #[arg(long, value_name = "LAW")]
     friction: Option<String>,
     /// Noise instead of the event's: iid, ar(k), student, or one or a sum of
-    /// white, ou, matern32, ar(k), tails, growth, such as "matern32 + white"
+    /// white, ou, matern32, ar(k), tails, growth, such as "matern32 + white";
+    /// or infer, for `calibrate` and `diagnose`: whichever is likely
     #[arg(long, value_name = "NOISE")]
     noise: Option<String>,
+    /// How the command thins its recording.
+    #[arg(skip)]
+    thin: Thin,
 }
 
 /// How much work to do, and from which seed.
@@ -163,23 +171,39 @@ pub fn main_with(laws: &Laws) -> ExitCode {
         Ok(cli) => cli,
         Err(error) => error.exit(),
     };
-    let outcome = match &cli.command {
-        Command::Calibrate(arguments) => arguments.run(laws),
-        Command::Compare(arguments) => arguments.run(laws),
-        Command::Diagnose(arguments) => arguments.run(laws),
-        Command::Challenge(arguments) => arguments.run(),
-        Command::Simulate(arguments) => arguments.run(laws),
-        Command::New(arguments) => arguments.run(),
-        Command::Bench(arguments) => arguments.run(laws),
-        Command::Reproduce(arguments) => arguments.run(),
-    };
-    match outcome {
-        Ok(text) => print(&text),
+    match cli.command.run(laws) {
+        Ok(answer) => end(&answer),
         Err(error) => {
             complain(&error.to_string());
             ExitCode::from(if error.is_input() { 2 } else { 1 })
         }
     }
+}
+
+impl Command {
+    fn run(&self, laws: &Laws) -> Result<Answer> {
+        match self {
+            Self::Calibrate(arguments) => arguments.run(laws),
+            Self::Compare(arguments) => arguments.run(laws).map(Answer::from),
+            Self::Diagnose(arguments) => arguments.run(laws),
+            Self::Challenge(arguments) => arguments.run().map(Answer::from),
+            Self::Simulate(arguments) => arguments.run(laws).map(Answer::from),
+            Self::New(arguments) => arguments.run().map(Answer::from),
+            Self::Bench(arguments) => arguments.run(laws).map(Answer::from),
+            Self::Reproduce(arguments) => arguments.run().map(Answer::from),
+        }
+    }
+}
+
+/// The exit code of a result that should not be used.
+const NOT_TO_BE_USED: u8 = 4;
+
+/// Prints an answer; the exit code says whether it may be used.
+fn end(answer: &Answer) -> ExitCode {
+    let printed = print(&answer.text);
+    let Some(why) = &answer.refused else { return printed };
+    complain(&format!("--strict: not to be used: {why}"));
+    ExitCode::from(NOT_TO_BE_USED)
 }
 
 /// Lists the laws in the help of every `--friction`, a user's own included.

@@ -5,31 +5,82 @@ use crate::error::{Error, Result};
 use crate::io::{self, EventFile};
 use crate::mechanism::catalogue::find;
 use crate::model::{Assembled, Program};
-use crate::noise;
+use crate::noise::{self, is_inferred, stand_in};
+use crate::observe::{Event, Series};
 use crate::physics::friction::Laws;
+
+/// A model as it was asked for.
+pub(super) struct Read {
+    pub(super) model: Assembled,
+    /// Whether its noise is to be inferred, and stands in for another.
+    pub(super) infers_noise: bool,
+    /// How its recordings were thinned.
+    pub(super) thinned: Vec<String>,
+}
 
 impl Subject {
     /// The event, the embedded one where none was named.
     pub(super) fn load(&self, laws: &Laws) -> Result<EventFile> {
-        match &self.event {
-            Some(path) => io::load(path, laws),
-            None => io::coastdown(laws),
-        }
+        self.load_told(laws).map(|(file, _)| file)
+    }
+
+    /// The same, and how its recordings were thinned.
+    fn load_told(&self, laws: &Laws) -> Result<(EventFile, Vec<String>)> {
+        let mut file = match &self.event {
+            Some(path) => io::load(path, laws)?,
+            None => io::coastdown(laws)?,
+        };
+        let place = file.path.display();
+        let thin = self.thin.apply(&file.event);
+        let (event, said) = thin.map_err(|e| e.within(place))?;
+        file.event = event;
+        Ok((file, said))
     }
 
     /// The model, with the laws that the command line may have changed.
     pub(super) fn model(&self, laws: &Laws) -> Result<Assembled> {
-        let file = self.load(laws)?;
+        Ok(self.read(laws)?.model)
+    }
+
+    /// The same under a noise that was named.
+    pub(super) fn named(&self, laws: &Laws) -> Result<Assembled> {
+        match self.read(laws)? {
+            Read { infers_noise: false, model, .. } => Ok(model),
+            _ => Err(Error::input(
+                "the noise is to be inferred; expected one noise: name it, \
+                 as in --noise \"ar(1)\"",
+            )),
+        }
+    }
+
+    /// The same, with whether its noise is to be inferred, and how it was
+    /// thinned.
+    pub(super) fn read(&self, laws: &Laws) -> Result<Read> {
+        let (file, thinned) = self.load_told(laws)?;
         let own = self.friction.is_none() && self.noise.is_none();
         let place = file.path.display().to_string();
         let friction = self.friction.clone();
-        let noise = self.noise.clone();
+        let noise = self.noise_of(&file.event);
+        let infers_noise = match &self.noise {
+            Some(name) => is_inferred(name),
+            None => file.infers_noise,
+        };
         let priors = file.priors.clone();
         let model = assemble(file, laws, friction, noise, None)?;
         if own {
             model.check_priors(&priors).map_err(|e| e.within(place))?;
         }
-        Ok(model)
+        Ok(Read { model, infers_noise, thinned })
+    }
+
+    /// The noise that the command line names; what stands in where it is to be
+    /// inferred.
+    fn noise_of(&self, event: &Event) -> Option<String> {
+        let name = self.noise.as_ref()?;
+        Some(match is_inferred(name) {
+            true => stand_in(event.recordings().map(Series::grid)).to_owned(),
+            false => name.clone(),
+        })
     }
 
     /// The event's files with these mechanisms added to its model, as far as
@@ -43,8 +94,8 @@ impl Subject {
         let (friction, noise) = (self.friction.clone(), self.noise.clone());
         let file = self.load(laws)?;
         let priors = file.priors.clone();
-        let named =
-            assemble(file, laws, friction.clone(), noise.clone(), None)?;
+        let known = self.noise_of(&file.event);
+        let named = assemble(file, laws, friction.clone(), known, None)?;
         let before = match other {
             Some(noise) => named.with_noise(noise)?,
             None => None,
@@ -60,8 +111,10 @@ impl Subject {
         let unused = model.without_effect(&priors);
         let unused = unused.into_iter().map(str::to_owned).collect();
         let noise = other.map(str::to_owned).or(noise);
+        let recording = model.event().recordings().next();
+        let recording = recording.filter(|_| !self.thin.is_none()).cloned();
         let correction =
-            io::Correction { friction, noise, mechanisms, unused };
+            io::Correction { friction, noise, mechanisms, unused, recording };
         io::corrected(self.event.as_deref(), &correction)
     }
 }

@@ -152,7 +152,8 @@ impl<P: Program> Subject<'_, P> {
         seed: Seed,
         progress: &dyn Progress,
     ) -> Result<usize> {
-        let row = taken(table, &self.log_of_noises(table, options));
+        let named = table.named().filter(|_| !options.infers_noise);
+        let row = taken(named, &self.log_of_noises(table, options));
         let seed = seed.child(2);
         table.rows[row].fill(&self.extent, &self.all, seed, progress)?;
         // Of those that have all fits by now.
@@ -162,7 +163,7 @@ impl<P: Program> Subject<'_, P> {
                 *log = f64::NEG_INFINITY;
             }
         }
-        Ok(taken(table, &logs))
+        Ok(taken(named, &logs))
     }
 
     fn log_of_noises(
@@ -204,7 +205,9 @@ impl<P: Program> Subject<'_, P> {
             mechanisms: judged.clone(),
             noise: decision.noises.clone(),
             selected_noise: match verdict {
-                Verdict::Adequate => options.noise.clone(),
+                Verdict::Adequate if !options.infers_noise => {
+                    options.noise.clone()
+                }
                 _ => row.noisy.name.clone(),
             },
             law,
@@ -214,6 +217,7 @@ impl<P: Program> Subject<'_, P> {
         diagnosis.rest = self.rest(row, after.as_ref(), seed)?;
         self.write_out(&mut diagnosis, chosen.as_ref(), forces, options);
         diagnosis.forces = forces.clone();
+        diagnosis.doubts = diagnosis.warnings.clone();
         diagnosis.weak = is_weak(&diagnosis);
         Ok(diagnosis)
     }
@@ -275,7 +279,8 @@ impl<P: Program> Subject<'_, P> {
         if let Some(chosen) = &chosen {
             chosen.call(&mut judged, all);
         }
-        if verdict == Verdict::Adequate && !table.keeps_named() {
+        let named_is_wrong = !table.keeps_named() && !options.infers_noise;
+        if verdict == Verdict::Adequate && named_is_wrong {
             verdict = Verdict::Errors;
         }
         let noises = judged_noises(table, &logs)?;

@@ -59,6 +59,11 @@ pub struct Diagnosis {
     pub seconds: f64,
     /// What to know before trusting it.
     pub warnings: Vec<String>,
+    /// How the recordings were thinned, and whether that matters, in
+    /// sentences.
+    pub notes: Vec<String>,
+    /// Those of the warnings for which its figures should not be used.
+    pub doubts: Vec<String>,
 }
 
 /// The model as it was, and how it stands to the recording.
@@ -69,6 +74,8 @@ pub struct Baseline {
     pub friction: String,
     /// The noise.
     pub noise: String,
+    /// Whether it stands in for one that was to be inferred.
+    pub infers_noise: bool,
     /// The labels of the mechanisms that it had already.
     pub mechanisms: Vec<String>,
     /// ln p(recording | model).

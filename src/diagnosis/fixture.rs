@@ -299,6 +299,8 @@ pub(super) fn diagnosis() -> Diagnosis {
         pictured: vec![pictured()],
         seconds: 6.2,
         warnings: vec![],
+        notes: vec![],
+        doubts: vec![],
     }
 }
 

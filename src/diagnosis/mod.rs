@@ -12,6 +12,7 @@ mod fixture;
 mod hypothesis;
 mod locate;
 mod options;
+mod rate;
 mod tell;
 #[cfg(test)]
 mod tests;
@@ -23,6 +24,7 @@ pub use diagnose::{diagnose, diagnose_together};
 pub use evidence::attribute::{Attribution, attribute};
 pub use evidence::combination::pair;
 pub use evidence::fit::{Fit, fit};
+pub(crate) use evidence::noises::{Noises, Noisy, noises};
 pub use findings::{
     Baseline, BeforeAfter, Corrected, Diagnosis, Improvement, Judged,
     JudgedNoise, LawParameters, Mismatch, ParameterSummary, Pictured, Rest,
@@ -30,6 +32,7 @@ pub use findings::{
 };
 pub use hypothesis::Hypothesis;
 pub use locate::{CELLS, FreeForce, locate};
+pub(crate) use locate::{locate_all, own_draws};
 pub use options::Options;
 #[cfg(feature = "pages")]
 pub use tell::page::page;

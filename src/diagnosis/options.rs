@@ -22,6 +22,9 @@ pub struct Options {
     pub friction: String,
     /// The noise's name: "ar(1)"; empty for the one that the model declares.
     pub noise: String,
+    /// Whether no noise was named, so that `noise` stands in for whichever is
+    /// likely.
+    pub infers_noise: bool,
     /// What is looked for: the mechanisms that come along, and further ones.
     pub catalogue: Catalogue,
     /// What is not looked for besides the laws, noises and mechanisms that

@@ -27,7 +27,8 @@ impl Display for Inference {
             let (log, se) = (evidence.log, evidence.se);
             writeln!(f, "ln evidence {log:.2} +- {se:.2}")?;
         }
-        self.warnings.iter().try_for_each(|w| writeln!(f, "Warning: {w}"))
+        let mut told = self.warnings.iter().chain(&self.hints);
+        told.try_for_each(|warning| writeln!(f, "Warning: {warning}"))
     }
 }
 

@@ -23,8 +23,10 @@ pub struct Inference {
     pub evidence: Option<Evidence>,
     /// What it cost.
     pub cost: Cost,
-    /// What the user should know before trusting the result.
+    /// Why the result should not be used as it is.
     pub warnings: Vec<String>,
+    /// What would have made a better run; nothing against using this one.
+    pub hints: Vec<String>,
 }
 
 impl Inference {

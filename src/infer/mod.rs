@@ -21,6 +21,7 @@ mod schedule;
 mod search;
 pub(crate) mod simplex;
 mod start;
+mod suited;
 mod temper;
 mod weights;
 
@@ -35,6 +36,7 @@ pub use inference::{Evidence, Inference, LEVELS, Marginal, Mode};
 pub use proposal::Mixture;
 pub(crate) use proposal::student_constant;
 pub use search::{HeldGrid, HeldPlace, SearchSpace};
+pub use suited::{Suited, suited};
 pub(crate) use weights::systematic;
 
 use std::fmt::Debug;

@@ -10,6 +10,7 @@ use super::event_file::{MOST_BYTES, find};
 use super::source::read_text;
 use super::words::place;
 use crate::error::{Error, Result};
+use crate::observe::Series;
 
 /// What is changed of an event's model.
 #[derive(Debug, Clone, Default)]
@@ -22,11 +23,13 @@ pub struct Correction {
     pub mechanisms: Vec<String>,
     /// The priors that the changed model has no parameters for.
     pub unused: Vec<String>,
+    /// The recording, where it is another than the file's.
+    pub recording: Option<Series>,
 }
 
 /// The files of an event with a corrected model, by their names in a folder:
-/// event.toml, recording.csv and, where the track has a file, track.csv. The
-/// event is the built-in one where no path is given.
+/// event.toml, recording.csv and, where track or flow depth have a file,
+/// track.csv and depth.csv. The event is the built-in one where no path is given.
 ///
 /// # Errors
 /// Files that can no longer be read.
@@ -40,7 +43,13 @@ pub fn corrected(
         })?;
         return Ok(vec![
             ("event.toml", text),
-            ("recording.csv", embedded::recording()),
+            (
+                RECORDING,
+                correction
+                    .recording
+                    .as_ref()
+                    .map_or_else(embedded::recording, csv),
+            ),
         ]);
     };
     let file = find(path)?;
@@ -52,10 +61,30 @@ pub fn corrected(
         data = moved(document);
     })?;
     let mut files = vec![("event.toml", text)];
+    if let Some(series) = &correction.recording {
+        files.push((RECORDING, csv(series)));
+        data.retain(|(name, _)| *name != RECORDING);
+    }
     for (name, from) in data {
         files.push((name, read_text(&folder.join(from), u64::MAX - 1)?));
     }
     Ok(files)
+}
+
+/// What the recording is called in the new folder.
+const RECORDING: &str = "recording.csv";
+
+/// A recording as its file has it, to the last digit.
+fn csv(series: &Series) -> String {
+    let errors = series.grid().standard_errors();
+    let sigma = if errors.is_some() { ",sigma" } else { "" };
+    let mut text = format!("t,{}{sigma}\n", series.quantity());
+    let rows = series.times().iter().zip(series.values()).enumerate();
+    for (i, (t, value)) in rows {
+        let sigma = errors.map_or(String::new(), |all| format!(",{}", all[i]));
+        text.push_str(&format!("{t},{value}{sigma}\n"));
+    }
+    text
 }
 
 /// The text of an event.toml after a change, all else as it was.
@@ -73,7 +102,8 @@ fn edited(
 }
 
 fn correct(document: &mut DocumentMut, correction: &Correction) {
-    let Correction { friction, noise, mechanisms, unused } = correction;
+    let Correction { friction, noise, mechanisms, unused, recording } =
+        correction;
     let model = document.entry("model").or_insert_with(table);
     if let Some(model) = model.as_table_like_mut() {
         for (key, name) in [("friction", friction), ("noise", noise)] {
@@ -83,6 +113,12 @@ fn correct(document: &mut DocumentMut, correction: &Correction) {
         }
         put(model, "mechanisms", mechanisms.iter().collect::<Array>());
     }
+    let section = document.get_mut("recording");
+    if let (Some(series), Some(section)) =
+        (recording, section.and_then(Item::as_table_like_mut))
+    {
+        put(section, "window", series.window());
+    }
     for name in unused {
         remove(document.get_mut("priors"), name);
     }
@@ -91,13 +127,17 @@ fn correct(document: &mut DocumentMut, correction: &Correction) {
 /// Names the data files anew, as they are called in the new folder; returns
 /// both names of each.
 fn moved(document: &mut DocumentMut) -> Vec<(&'static str, String)> {
-    let files = [("track", "track.csv"), ("recording", "recording.csv")];
+    let files = [
+        ("track", "file", "track.csv"),
+        ("recording", "file", RECORDING),
+        ("flow", "depth", "depth.csv"),
+    ];
     files
         .into_iter()
-        .filter_map(|(section, name)| {
+        .filter_map(|(section, key, name)| {
             let section = document.get_mut(section)?.as_table_like_mut()?;
-            let from = section.get("file")?.as_str()?.to_owned();
-            put(section, "file", name);
+            let from = section.get(key)?.as_str()?.to_owned();
+            put(section, key, name);
             Some((name, from))
         })
         .collect()
@@ -148,15 +188,36 @@ mod tests {
     fn all_else_stays_as_the_user_wrote_it() {
         let before = "# mine\nname = 'a'\n[track]\nslope = 1.0 # measured\n\
                       [recording]\nfile = \"../x/r.csv\" # by radar\n\
+                      [flow]\ndepth = \"../y/h.csv\"\n\
                       [model] # first guess\nfriction = \"voellmy\" # why\n\
                       mechanisms = []\n[priors]\nmu = \"Gamma(9, 0.03)\"\n\
                       xi = \"Gamma(2, 400)\"\nvoellmy.mu = \"Flat()\"\n";
         let expected = before
             .replace("../x/r.csv", "recording.csv")
+            .replace("../y/h.csv", "depth.csv")
             .replace("\"voellmy\"", "\"coulomb\"")
             .replace("mechanisms = []\n", LIST)
             .replace("xi = \"Gamma(2, 400)\"\nvoellmy.mu = \"Flat()\"\n", "");
         assert_eq!(after(before), expected);
+    }
+
+    #[test]
+    fn a_thinned_recording_is_written_with_its_window() {
+        let series = Series::velocity(vec![0.5, 1.0], vec![2.5, 0.1 + 0.2])
+            .and_then(|s| s.with_standard_errors(vec![0.25, 0.5]))
+            .and_then(|s| s.with_window(0.5))
+            .unwrap();
+        assert_eq!(
+            csv(&series),
+            "t,velocity,sigma\n0.5,2.5,0.25\n1,0.30000000000000004,0.5\n"
+        );
+        let recording = Some(series);
+        let correction = Correction { recording, ..Correction::default() };
+        let before = "[recording]\nfile = \"r.csv\"\nwindow = 0.1 # why\n";
+        let text = edited(before, Path::new("event.toml"), |document| {
+            correct(document, &correction);
+        });
+        assert!(text.unwrap().contains("window = 0.5 # why\n"));
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Data files: the points of a track, the values of a recording.
+//! Data files: the points of a track, the values of a recording, flow depths.
 
 use std::io::{ErrorKind, Read};
 use std::path::Path;
@@ -9,7 +9,7 @@ use super::lines::Lines;
 use super::words::{admissible, either, nearest, place, quoted};
 use crate::error::{Error, Result};
 use crate::observe::{Quantity, Series};
-use crate::physics::Track;
+use crate::physics::{Depth, DepthRows, Track};
 
 /// The most rows that a data file may have.
 pub const MOST_ROWS: usize = 1_000_000;
@@ -49,11 +49,8 @@ pub fn read_track(source: impl Read, path: &Path) -> Result<Track> {
         )),
         _ => Ok(()),
     };
-    let (_, rows) = Table { path, columns: &columns }.read(
-        source,
-        "write \"x,z\"",
-        check,
-    )?;
+    let table = Table { path, columns: &columns, or: &[] };
+    let (_, rows) = table.read(source, "write \"x,z\"", check)?;
     if rows.len() < 2 {
         return Err(Error::input(format!(
             "{}: has one point only; expected at least two: add the end of \
@@ -86,12 +83,12 @@ pub fn read_recording(
         "write \"t,{quantity}\" over times [s] and values [{unit}], or change \
          recording.quantity, which is \"{quantity}\""
     );
-    let (given, rows) =
-        Table { path, columns: &columns }.read(source, &mend, check_values)?;
+    let table = Table { path, columns: &columns, or: &[] };
+    let (given, rows) = table.read(source, &mend, check_values)?;
     let column = |i: usize| rows.iter().map(|row| row[i]).collect::<Vec<_>>();
     let series =
         Series::new(quantity, column(0), column(1)).and_then(|series| {
-            match given {
+            match given.len() {
                 3 => series.with_standard_errors(column(2)),
                 _ => Ok(series),
             }
@@ -123,21 +120,79 @@ fn check_values(before: Option<&Row>, row: &Row) -> Result<(), String> {
     Ok(())
 }
 
+/// Reads flow depths, `x,depth` or `t,depth`: horizontal distance \[m\] or
+/// time since the release \[s\], increasing, and the depth \[m\]. `path` is
+/// what messages call the source.
+///
+/// ```
+/// use std::path::Path;
+/// use couloir::{io::read_depth, physics::Depth};
+/// let text = "t,depth\n0,1.2\n20,2.4\n";
+/// let depth = read_depth(text.as_bytes(), Path::new("depth.csv"))?;
+/// let Depth::During(rows) = depth else { unreachable!() };
+/// assert_eq!(rows.at(10.0), 1.8);
+/// # Ok::<(), couloir::Error>(())
+/// ```
+///
+/// # Errors
+/// An input error that names the line: another header, a cell that is no
+/// finite number, a place or a time that does not increase, a depth that is
+/// not more than 0, no row, more than [`MOST_ROWS`], or bytes that are no
+/// text.
+pub fn read_depth(source: impl Read, path: &Path) -> Result<Depth> {
+    let table = Table {
+        path,
+        columns: &[("x", "m"), ("depth", "m")],
+        or: &[("t", "s"), ("depth", "m")],
+    };
+    let mend = "write \"x,depth\" over horizontal distances [m], or \
+                \"t,depth\" over times [s], and depths [m]";
+    let (given, rows) = table.read(source, mend, check_depths)?;
+    let column = |i: usize| rows.iter().map(|row| row[i]).collect::<Vec<_>>();
+    let rows = DepthRows::new(column(0), column(1))
+        .map_err(|error| error.within(place(path)))?;
+    Ok(match given[0].0 {
+        "t" => Depth::During(rows),
+        _ => Depth::Along(rows),
+    })
+}
+
+fn check_depths(before: Option<&Row>, row: &Row) -> Result<(), String> {
+    let [at, depth, _] = *row;
+    if let Some([last, ..]) = before
+        && at <= *last
+    {
+        return Err(format!(
+            "{at} follows {last}; expected places or times that increase: \
+             sort the rows and drop repeated ones"
+        ));
+    }
+    if depth <= 0.0 {
+        return Err(format!(
+            "depth = {depth}; expected metres, more than 0: drop the row \
+             where nothing was measured"
+        ));
+    }
+    Ok(())
+}
+
 /// What a data file has to look like.
 struct Table<'t> {
     path: &'t Path,
     /// The columns, of which those after [`NEEDED`] may be left out.
     columns: &'t [Column],
+    /// Others that may be there instead, all of them.
+    or: &'t [Column],
 }
 
-impl Table<'_> {
-    /// The number of columns in the header, and the rows.
+impl<'t> Table<'t> {
+    /// The columns that the header has, and the rows.
     fn read(
         &self,
         source: impl Read,
         mend: &str,
         check: impl Fn(Option<&Row>, &Row) -> Result<(), String>,
-    ) -> Result<(usize, Vec<Row>)> {
+    ) -> Result<(&'t [Column], Vec<Row>)> {
         let mut reader = csv::ReaderBuilder::new()
             .has_headers(false)
             .flexible(true)
@@ -146,7 +201,7 @@ impl Table<'_> {
             .from_reader(Lines::new(source));
         let mut record = StringRecord::new();
         let mut rows: Vec<Row> = Vec::new();
-        let mut given = 0;
+        let mut given: &'t [Column] = &[];
         while reader
             .read_record(&mut record)
             .map_err(|error| self.broken(error))?
@@ -154,7 +209,7 @@ impl Table<'_> {
             // Every line ends in one line feed: the reader stands behind it.
             let line = reader.position().line() - 1;
             let at = |message| self.at(line, message);
-            if given == 0 {
+            if given.is_empty() {
                 given = self.header(&record, mend).map_err(at)?;
                 continue;
             }
@@ -169,25 +224,32 @@ impl Table<'_> {
             rows.push(row);
         }
         if rows.is_empty() {
-            Err(self.empty(given))
+            Err(self.empty(given.len()))
         } else {
             Ok((given, rows))
         }
     }
 
-    /// How many columns a good header has.
+    /// The columns of a good header.
     fn header(
         &self,
         record: &StringRecord,
         mend: &str,
-    ) -> Result<usize, String> {
+    ) -> Result<&'t [Column], String> {
         let found: Vec<_> = record.iter().map(bare).collect();
         let names: Vec<_> = self.columns.iter().map(|c| c.0).collect();
         if found.len() >= NEEDED && names.starts_with(&found) {
-            return Ok(found.len());
+            return Ok(&self.columns[..found.len()]);
         }
-        let forms: Vec<_> =
+        let other: Vec<_> = self.or.iter().map(|c| c.0).collect();
+        if !other.is_empty() && found == other {
+            return Ok(self.or);
+        }
+        let mut forms: Vec<_> =
             (NEEDED..=names.len()).map(|n| names[..n].join(",")).collect();
+        if !other.is_empty() {
+            forms.push(other.join(","));
+        }
         let forms: Vec<_> = forms.iter().map(String::as_str).collect();
         let text = found.join(",");
         Err(format!(
@@ -231,20 +293,25 @@ impl Table<'_> {
         }
     }
 
-    fn row(&self, record: &StringRecord, given: usize) -> Result<Row, String> {
-        if record.len() != given {
+    fn row(
+        &self,
+        record: &StringRecord,
+        given: &[Column],
+    ) -> Result<Row, String> {
+        if record.len() != given.len() {
             return Err(format!(
-                "has {}; expected {given}, as in the header: separate \
+                "has {}; expected {}, as in the header: separate \
                  them by commas, and write decimals with a point",
                 match record.len() {
                     1 => "1 cell".to_owned(),
                     count => format!("{count} cells"),
-                }
+                },
+                given.len()
             ));
         }
         let mut row = Row::default();
         for ((cell, value), (name, unit)) in
-            record.iter().zip(&mut row).zip(self.columns)
+            record.iter().zip(&mut row).zip(given)
         {
             *value = number(bare(cell), unit)
                 .map_err(|what| format!("{name} {what}"))?;
@@ -335,6 +402,27 @@ mod tests {
             "\n\nt,velocity\n\n+1.0,25e-1\n2.,3.0\n",
         ] {
             assert_eq!(speeds(text).unwrap(), plain, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn depths_are_over_places_or_times() {
+        let read =
+            |text: &str| read_depth(text.as_bytes(), Path::new("d.csv"));
+        let rows = DepthRows::new(vec![0.0, 5.0], vec![1.0, 2.0]).unwrap();
+        let over = |first: &str| read(&format!("{first},depth\n0,1\n5,2\n"));
+        assert_eq!(over("x").unwrap(), Depth::Along(rows.clone()));
+        assert_eq!(over("t").unwrap(), Depth::During(rows));
+        for (text, part) in [
+            ("s,depth\n0,1\n", "\"x,depth\" or \"t,depth\""),
+            ("x,depth,z\n0,1,2\n", "d.csv:1"),
+            ("x,depth\n0,1\n0,2\n", "d.csv:3: 0 follows 0"),
+            ("x,depth\n0,1\n2,0\n", "d.csv:3: depth = 0; expected metres"),
+            ("t,depth\n0,inf\n", "d.csv:2: depth is \"inf\""),
+            ("t,depth\n", "no rows"),
+        ] {
+            let error = read(text).unwrap_err().to_string();
+            assert!(error.contains(part), "{error}");
         }
     }
 

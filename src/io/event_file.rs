@@ -6,15 +6,15 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::csv_file::{read_recording, read_track};
+use super::csv_file::{read_depth, read_recording, read_track};
 use super::document::{Document, Section};
 use super::source;
 use super::words::{either, nearest, place, quoted};
 use crate::error::{Error, Result, Stop};
-use crate::noise::{self, Grid, NoiseEntry, NoiseFor};
-use crate::observe::{Event, Quantity};
-use crate::physics::Track;
+use crate::noise::{self, Grid, NoiseEntry, NoiseFor, is_inferred, stand_in};
+use crate::observe::{Event, Quantity, Series};
 use crate::physics::friction::{LawSum, Laws};
+use crate::physics::{Depth, Track};
 use crate::prior::AnyPrior;
 use crate::scalar::{Plain, Real};
 
@@ -23,10 +23,11 @@ pub(super) const MOST_BYTES: u64 = 1 << 20;
 
 /// An event with the model that its file asks for.
 ///
-/// What a file leaves out is: `event.start` 0, `track.origin` 0, `release.x` the track's first
-/// point, `release.velocity` 0, `flow.depth` 1 m (then xi stands for the
-/// product xi h), `recording.window` 0, `model.friction` "voellmy",
-/// `model.noise` "iid", and the blocks' own priors.
+/// What a file leaves out is: `event.start` 0, `track.origin` 0, `release.x`
+/// the track's first point, `release.velocity` 0, `flow.depth` 1 m (then xi
+/// stands for the product xi h), `recording.window` 0, `model.friction`
+/// "voellmy", `model.noise` "iid", and the blocks' own priors. The noise
+/// "infer" is whichever is likely.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct EventFile {
@@ -34,8 +35,10 @@ pub struct EventFile {
     pub event: Event,
     /// The friction law.
     pub friction: LawSum,
-    /// The noise.
+    /// The noise; where it is to be inferred, the one to begin with.
     pub noise: Box<dyn NoiseEntry>,
+    /// Whether it is to be inferred.
+    pub infers_noise: bool,
     /// Priors by the names of their parameters; whether the model has such
     /// parameters is not checked here.
     pub priors: BTreeMap<String, AnyPrior>,
@@ -123,17 +126,15 @@ pub fn parse_event<R: Read>(
     let model = Model::read(&top, laws)?;
     let priors = read_priors(&top.section("priors")?)?;
     let event = read_event(&top, &open)?;
-    for series in event.recordings() {
-        check_noise(model.noise.as_ref(), series.grid())
-            .map_err(|error| model.section.about("noise", error))?;
-    }
+    let noise = model.noise_of(&event)?;
     let mechanisms_at = model.section.spot("mechanisms");
-    let Model { friction, noise, mechanisms, .. } = model;
+    let Model { friction, noise: named, mechanisms, .. } = model;
     let path = path.to_owned();
     Ok(EventFile {
         event,
         friction,
         noise,
+        infers_noise: is_inferred(&named),
         priors,
         mechanisms,
         mechanisms_at,
@@ -144,7 +145,8 @@ pub fn parse_event<R: Read>(
 type Open<'o, R> = &'o dyn Fn(&str) -> Result<(R, PathBuf)>;
 
 fn read_event<R: Read>(top: &Section, open: Open<R>) -> Result<Event> {
-    let still = at_rest(top, read_track_section(top, open)?)?;
+    let depth = read_flow(&top.section("flow")?, open)?;
+    let still = at_rest(top, read_track_section(top, open)?, depth)?;
     let recording = top.section("recording")?;
     recording.only(&["file", "quantity", "window"])?;
     let quantity = read_quantity(&recording)?;
@@ -227,14 +229,26 @@ fn incline(section: &Section, slope: f64, length: f64) -> Result<Track> {
         .map_err(|error| section.about("length", error))
 }
 
-/// The event before anything was recorded.
-fn at_rest(top: &Section, track: Track) -> Result<Event> {
-    let (release, flow) = (top.section("release")?, top.section("flow")?);
-    let clock = top.section("event")?;
-    clock.only(&["start"])?;
-    let start = clock.number("start")?.unwrap_or(0.0);
-    release.only(&["x", "velocity"])?;
+/// The flow depth, a number or a file of them.
+fn read_flow<R: Read>(flow: &Section, open: Open<R>) -> Result<Depth> {
     flow.only(&["depth"])?;
+    if flow.is_text("depth")
+        && let Some(file) = flow.text("depth")?
+    {
+        if file.trim().parse::<f64>().is_ok() {
+            return Err(flow.at(
+                "depth",
+                format!(
+                    "is the text {}; expected a number or the name of a \
+                     file: drop the quotes",
+                    quoted(file)
+                ),
+            ));
+        }
+        let (source, path) =
+            open(file).map_err(|error| flow.about("depth", error))?;
+        return read_depth(source, &path);
+    }
     let depth = flow.number("depth")?.unwrap_or(1.0);
     if depth <= 0.0 {
         return Err(flow.at(
@@ -242,6 +256,15 @@ fn at_rest(top: &Section, track: Track) -> Result<Event> {
             format!("is {depth}; expected metres, more than 0"),
         ));
     }
+    Ok(Depth::Even(depth))
+}
+
+/// The event before anything was recorded.
+fn at_rest(top: &Section, track: Track, depth: Depth) -> Result<Event> {
+    let (clock, release) = (top.section("event")?, top.section("release")?);
+    clock.only(&["start"])?;
+    let start = clock.number("start")?.unwrap_or(0.0);
+    release.only(&["x", "velocity"])?;
     let velocity = release.number("velocity")?.unwrap_or(0.0);
     if velocity < 0.0 {
         return Err(release.at(
@@ -251,6 +274,10 @@ fn at_rest(top: &Section, track: Track) -> Result<Event> {
     }
     let x = release.number("x")?.unwrap_or(track.points().0[0]);
     track.distance_at(x).map_err(|error| release.about("x", error))?;
+    if let Depth::Along(rows) = &depth {
+        let flow = top.section("flow")?;
+        track.with_depths(rows).map_err(|error| flow.about("depth", error))?;
+    }
     let name = top.text("name")?.unwrap_or("event");
     Event::on(track)
         .named(name)
@@ -265,7 +292,7 @@ fn at_rest(top: &Section, track: Track) -> Result<Event> {
 struct Model<'d> {
     section: Section<'d>,
     friction: LawSum,
-    noise: Box<dyn NoiseEntry>,
+    noise: String,
     mechanisms: Vec<String>,
 }
 
@@ -278,11 +305,28 @@ impl<'d> Model<'d> {
             .parse(text)
             .and_then(once_each)
             .map_err(|error| section.about("friction", error))?;
-        let noise = noise::parse(section.text("noise")?.unwrap_or("iid"))
-            .map_err(|error| section.about("noise", error))?;
+        let noise = section.text("noise")?.unwrap_or("iid").to_owned();
+        if !is_inferred(&noise) {
+            noise::parse(&noise)
+                .map_err(|error| section.about("noise", error))?;
+        }
         let mechanisms = section.texts("mechanisms")?;
         let mechanisms = mechanisms.into_iter().map(str::to_owned).collect();
         Ok(Self { section, friction, noise, mechanisms })
+    }
+
+    /// The noise of an event's recordings.
+    fn noise_of(&self, event: &Event) -> Result<Box<dyn NoiseEntry>> {
+        let name = match is_inferred(&self.noise) {
+            true => stand_in(event.recordings().map(Series::grid)),
+            false => &self.noise,
+        };
+        let noise = noise::parse(name)?;
+        for series in event.recordings() {
+            check_noise(noise.as_ref(), series.grid())
+                .map_err(|error| self.section.about("noise", error))?;
+        }
+        Ok(noise)
     }
 }
 

@@ -16,7 +16,7 @@ mod words;
 mod write;
 
 pub use corrected::{Correction, corrected};
-pub use csv_file::{MOST_ROWS, read_recording, read_track};
+pub use csv_file::{MOST_ROWS, read_depth, read_recording, read_track};
 pub use embedded::coastdown;
 pub use event_file::{EventFile, load, parse_event};
 pub use template::new_event;

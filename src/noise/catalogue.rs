@@ -3,6 +3,7 @@
 use std::marker::PhantomData;
 
 use super::entry::{NoiseEntry, NoiseFor};
+use super::inferred::INFER;
 use super::summed::SumEntry;
 use super::{
     Ar, Growth, Iid, Matern32, Noise, Ou, Part, Student, Tails, White, Whole,
@@ -256,6 +257,13 @@ pub fn parse(text: &str) -> crate::Result<Box<dyn NoiseEntry>> {
 
 /// A block by its name and its order.
 fn block(text: &str) -> crate::Result<(&'static Listed, Box<dyn NoiseEntry>)> {
+    if text == INFER {
+        return Err(Error::input(
+            "\"infer\" is whichever noise is likely, by itself and for \
+             `calibrate` and `diagnose` only; expected one noise: name it, \
+             as in \"ar(1)\"",
+        ));
+    }
     let (name, argument) = match text.split_once('(') {
         None => (text, None),
         Some((name, rest)) => match rest.strip_suffix(')') {

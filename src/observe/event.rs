@@ -3,7 +3,7 @@
 use super::scatter::reach_error;
 use super::series::{Quantity, Series, path_length};
 use crate::error::{Error, Result};
-use crate::physics::{Path, Release, Track};
+use crate::physics::{Depth, DepthSteps, Path, Release, Track};
 use crate::scalar::Kind;
 
 /// How many standard errors of the distance that speeds add up to are put
@@ -27,6 +27,8 @@ pub struct Event {
     name: String,
     track: Track,
     depth: f64,
+    /// How the depth changes with time.
+    steps: Option<DepthSteps>,
     distance: f64,
     speed: f64,
     clock: f64,
@@ -44,6 +46,7 @@ pub struct Event {
 #[derive(Debug, Clone)]
 pub struct EventBuilder {
     event: Event,
+    depth: Depth,
     x: f64,
 }
 
@@ -64,10 +67,22 @@ impl EventBuilder {
         self
     }
 
-    /// The mean flow depth h \[m\].
+    /// The mean flow depth h: a number \[m\], or a [`Depth`] that changes
+    /// along the track or with time.
+    ///
+    /// ```
+    /// use couloir::Event;
+    /// use couloir::physics::{Depth, DepthRows, Track};
+    /// let rows = DepthRows::new(vec![0.0, 300.0], vec![1.0, 2.5])?;
+    /// let event = Event::on(Track::incline(35.0, 500.0)?)
+    ///     .depth(Depth::Along(rows))
+    ///     .build()?;
+    /// assert_eq!(event.depth(), 1.0);
+    /// # Ok::<(), couloir::Error>(())
+    /// ```
     #[must_use]
-    pub fn depth(mut self, depth: f64) -> Self {
-        self.event.depth = depth;
+    pub fn depth(mut self, depth: impl Into<Depth>) -> Self {
+        self.depth = depth.into();
         self
     }
 
@@ -118,6 +133,7 @@ impl EventBuilder {
     /// track, or a value at t = 0 beside a release speed.
     pub fn build(self) -> Result<Event> {
         let mut event = self.event;
+        event.set_depth(&self.depth, self.x)?;
         if !(event.depth > 0.0 && event.depth.is_finite()) {
             return Err(Error::input(format!(
                 "flow.depth is {}; expected metres, more than 0",
@@ -155,6 +171,7 @@ impl Event {
             name: String::new(),
             track,
             depth: 1.0,
+            steps: None,
             distance: 0.0,
             speed: 0.0,
             clock: 0.0,
@@ -164,7 +181,7 @@ impl Event {
             samples: Vec::new(),
         };
         let x = event.track.points().0[0];
-        EventBuilder { event, x }
+        EventBuilder { event, depth: Depth::Even(1.0), x }
     }
 
     /// Its name.
@@ -177,7 +194,7 @@ impl Event {
         &self.track
     }
 
-    /// The mean flow depth \[m\].
+    /// The mean flow depth \[m\]; that at the release where it changes.
     pub fn depth(&self) -> f64 {
         self.depth
     }
@@ -201,7 +218,7 @@ impl Event {
 
     /// The ground the flow runs on.
     pub fn path(&self) -> Path<'_> {
-        Path { track: &self.track, depth: self.depth }
+        Path::new(&self.track, self.depth).during(self.steps.as_ref())
     }
 
     /// The same event with another recording in place of its own of the same
@@ -210,8 +227,13 @@ impl Event {
     /// # Errors
     /// As in [`EventBuilder::build`].
     pub fn with_recording(&self, series: Series) -> Result<Self> {
-        let builder = EventBuilder { event: self.clone(), x: 0.0 };
-        let mut event = builder.series(series).event;
+        let mut event = self.clone();
+        let recorded = match series.quantity() {
+            Quantity::Velocity => &mut event.velocity,
+            Quantity::Position => &mut event.position,
+            Quantity::Acceleration => &mut event.acceleration,
+        };
+        *recorded = series;
         event.check_recordings()?;
         event.plan();
         Ok(event)
@@ -230,6 +252,27 @@ impl Event {
             ));
         };
         self.with_recording(one.first(count)?)
+    }
+
+    /// Whether the flow depth changes with time.
+    pub(super) fn has_depth_steps(&self) -> bool {
+        self.steps.is_some()
+    }
+
+    fn set_depth(&mut self, depth: &Depth, x: f64) -> Result<()> {
+        match depth {
+            Depth::Even(depth) => self.depth = *depth,
+            Depth::Along(rows) => {
+                self.depth = rows.at(x);
+                let cut = self.track.with_depths(rows);
+                self.track = cut.map_err(|e| e.within("flow.depth"))?;
+            }
+            Depth::During(rows) => {
+                self.depth = rows.at(0.0);
+                self.steps = Some(rows.steps());
+            }
+        }
+        Ok(())
     }
 
     fn check_that_it_moves(&self) -> Result<()> {

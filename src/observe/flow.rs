@@ -5,6 +5,7 @@ use super::series::{Quantity, Series};
 use crate::context::Buffer;
 use crate::declared::Declared;
 use crate::error::{Error, Stop};
+use crate::mechanism::Change;
 use crate::physics::{Friction, Rest, State, sample};
 use crate::scalar::{Kind, Real};
 
@@ -48,9 +49,10 @@ impl Event {
         let speed_only = self.velocity.window() == 0.0
             && self.position.is_empty()
             && self.acceleration.is_empty();
-        if let Some(change) = friction.change()
-            && change.moves()
-        {
+        let change = friction.change().filter(|change| change.moves());
+        if change.is_some() || self.has_depth_steps() {
+            let none = Change::default();
+            let change = change.unwrap_or(&none);
             let visit = |state| flow.push(state, speed_only);
             self.slide_changed(friction, change, speed_only, visit)?;
             return Ok(flow);

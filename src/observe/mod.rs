@@ -10,8 +10,10 @@ mod flow;
 mod motion;
 mod scatter;
 mod series;
+mod thin;
 
 pub use crate::mechanism::Extent;
 pub use event::{Event, EventBuilder};
 pub use flow::{Flow, Prediction, Recorded};
 pub use series::{Quantity, Series};
+pub use thin::{Thinned, Thinning};

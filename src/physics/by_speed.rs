@@ -9,7 +9,7 @@
 use super::exact::{End, Force, Pace};
 use super::fitted::{Fitted, Nearest};
 use super::friction::{Friction, Site};
-use super::motion::{Path, Release, Rest, State, Walker, first_piece, site};
+use super::motion::{Path, Release, Rest, State, Walker, first_piece};
 use super::track::Piece;
 use crate::error::Stop;
 use crate::scalar::{Kind, Real};
@@ -52,7 +52,7 @@ struct Leg<K: Kind> {
 /// The walker of laws that vary with the speed.
 pub(super) struct SpeedWalker<'a, K: Kind, L> {
     pieces: &'a [Piece],
-    depth: f64,
+    path: Path<'a>,
     law: &'a L,
     index: usize,
     /// How far into its piece the leg begins [m].
@@ -83,7 +83,7 @@ impl<'a, K: Kind, L: Friction<K>> SpeedWalker<'a, K, L> {
         let zero = Real::new(0.0);
         let mut walker = Self {
             pieces: path.track.pieces(),
-            depth: path.depth,
+            path: *path,
             law,
             index,
             within,
@@ -101,14 +101,18 @@ impl<'a, K: Kind, L: Friction<K>> SpeedWalker<'a, K, L> {
         Ok(walker)
     }
 
+    fn site(&self) -> Site {
+        self.path.site(self.index, self.begins.value())
+    }
+
     fn acceleration(&self, speed: Real<K>) -> Real<K> {
-        let site = site(&self.pieces[self.index], self.depth);
+        let site = self.site();
         acceleration(self.law, &site, speed)
     }
 
     /// Finds the leg that begins here and now.
     fn begin(&mut self) -> Result<(), Stop> {
-        let site = site(&self.pieces[self.index], self.depth);
+        let site = self.site();
         let push = acceleration(self.law, &site, self.pace.u);
         if self.pace.u <= 0.0 && push <= 0.0 {
             self.come_to_rest();

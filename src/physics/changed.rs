@@ -8,11 +8,9 @@
 
 use super::ahead::Ahead;
 use super::exact::{End, Force, Pace};
-use super::forces::{Axis, Forces, Moment, NEAR};
+use super::forces::{Axis, Forces, Moment, NEAR, nearer};
 use super::friction::{Friction, Rate, Varies};
-use super::motion::{
-    Path, Release, Rest, State, Walker, first_piece, follow, site,
-};
+use super::motion::{Path, Release, Rest, State, Walker, first_piece, follow};
 use super::resistance::{Even, Resistance, Tilt};
 use super::skim::{Crossing, Entry, skim, skim_even};
 use super::track::Piece;
@@ -35,7 +33,7 @@ pub(crate) struct ChangedWalker<'a, K: Kind> {
     law: &'a dyn Friction<K>,
     forces: &'a Forces<K>,
     bends: bool,
-    /// The law's rates, if they are the same everywhere.
+    /// The law's rates, if they are the same on all pieces.
     uniform: Option<Rate<K>>,
     tilt: Tilt<K>,
     /// Whether every piece carries the mass in spite of it.
@@ -71,6 +69,8 @@ pub(crate) struct ChangedWalker<'a, K: Kind> {
     after: Real<K>,
     ends: f64,
     rests: bool,
+    /// Since when [s], if it does.
+    since: Real<K>,
 }
 
 impl<'a, K: Kind> ChangedWalker<'a, K> {
@@ -82,15 +82,13 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
     ) -> Result<Self, Stop> {
         let (index, _) = first_piece(path, &release)?;
         let zero = Real::new(0.0);
-        let piece = &path.track.pieces()[index];
         let tilt = Tilt::by(forces.tilt);
         let mut walker = Self {
             path: *path,
             law,
             forces,
             bends: law.varies() == Varies::WithSpeed || forces.bends(),
-            uniform: (law.varies() == Varies::Nowhere)
-                .then(|| law.rate(&site(piece, path.depth), zero)),
+            uniform: path.uniform(law, index, 0.0),
             tilt,
             carries: tilt.carries(path.track.pieces()),
             added: Rate::default(),
@@ -114,6 +112,7 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
             after: zero,
             ends: f64::INFINITY,
             rests: false,
+            since: zero,
         };
         walker.look_ahead();
         walker.set_off()?;
@@ -132,6 +131,7 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         let next = self.forces.next(Axis::Place, at);
         self.cut = next.map(|cut| cut - origin);
         self.moment = self.forces.next(Axis::Time, time);
+        self.look_at_depth(time);
         self.whole = self.whole_pieces();
         self.farthest = self.forces.longest(Axis::Place, at);
         self.longest = self.forces.longest(Axis::Time, time);
@@ -147,6 +147,16 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         let even = base.filter(|_| !self.varies);
         self.even = even.and_then(|base| Even::of(&base, &self.tilt));
         self.ahead = Ahead::default();
+    }
+
+    /// The depth from a time on, and until when that holds.
+    fn look_at_depth(&mut self, time: f64) {
+        let Some(steps) = self.path.steps() else { return };
+        let next = steps.next(time, NEAR).map(Real::new);
+        self.moment = nearer(self.moment, next);
+        let site = self.path.site(self.index, time);
+        let zero = Real::new(0.0);
+        self.uniform = self.uniform.map(|_| self.law.rate(&site, zero));
     }
 
     /// The piece in which the next cut lies, or the last one.
@@ -169,7 +179,7 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
 
     /// The rates of law and forces on the leg's piece.
     fn rate(&self, at: &Moment<K>) -> Rate<K> {
-        let site = || site(self.piece(), self.path.depth);
+        let site = || self.path.site(self.index, self.begins.value());
         let law = || self.law.rate(&site(), at.speed);
         let mut rate = self.uniform.unwrap_or_else(law) + self.added;
         self.forces.add_to(&mut rate, at, true);
@@ -300,7 +310,9 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         let (pace, begins) = (&self.pace, self.begins);
         self.force = self.force_on(self.piece(), stretch, pace, begins, limit);
         if self.pace.u <= 0.0 && self.force.a <= 0.0 {
-            self.rests = true;
+            if !self.rests {
+                (self.rests, self.since) = (true, self.begins);
+            }
             self.wait(self.latest());
             return Ok(());
         }
@@ -504,7 +516,7 @@ impl<K: Kind> Walker<K> for ChangedWalker<'_, K> {
 
     fn at_rest(&self) -> Option<Rest<K>> {
         let for_good = self.rests && self.border == Border::Nothing;
-        for_good.then_some(Rest { time: self.begins, distance: self.place })
+        for_good.then_some(Rest { time: self.since, distance: self.place })
     }
 }
 

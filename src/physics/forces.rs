@@ -291,7 +291,10 @@ fn between_middles<K: Kind>(
     values[cell] + (values[cell + 1] - values[cell]) * (position - cell as f64)
 }
 
-fn nearer<K: Kind>(a: Option<Real<K>>, b: Option<Real<K>>) -> Option<Real<K>> {
+pub(super) fn nearer<K: Kind>(
+    a: Option<Real<K>>,
+    b: Option<Real<K>>,
+) -> Option<Real<K>> {
     match (a, b) {
         (Some(a), Some(b)) => Some(if b < a { b } else { a }),
         (a, b) => a.or(b),

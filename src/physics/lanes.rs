@@ -18,8 +18,8 @@
 
 use super::eight::{EIGHT, Eight, atanhc, expc, tanhc};
 use super::exact::{FAR, Pace};
-use super::friction::{Friction, Rate, Varies};
-use super::motion::{Path, Release, State, first_piece, site};
+use super::friction::{Friction, Rate};
+use super::motion::{Path, Release, State, first_piece};
 use super::sample::sample;
 use super::track::Piece;
 use super::walk::{Standing, sample_from};
@@ -95,11 +95,10 @@ fn side_by_side<L: Friction<Plain>>(
 /// A law's rates, where they are the same everywhere and leave nothing to
 /// meet but borders and stops.
 fn plain<L: Friction<Plain>>(path: &Path<'_>, law: &L) -> Option<Rate<Plain>> {
-    if law.varies() != Varies::Nowhere {
+    if path.steps().is_some() {
         return None;
     }
-    let rate =
-        law.rate(&site(&path.track.pieces()[0], path.depth), 0.0.into());
+    let rate = path.uniform(law, 0, 0.0)?;
     let zero = |x: Real<Plain>| x.value() == 0.0;
     (zero(rate.pressed) && zero(rate.linear)).then_some(rate)
 }
@@ -429,7 +428,7 @@ mod tests {
                 z.push(z[z.len() - 1] - run * fall);
             }
             let track = Track::from_points(&x, &z).unwrap();
-            let path = Path { track: &track, depth: 1.7 };
+            let path = Path::new(&track, 1.7);
             let number = Number::new;
             let laws: Vec<_> = values
                 .into_iter()
@@ -451,7 +450,7 @@ mod tests {
     #[test]
     fn other_laws_and_impossible_ones_are_solved_one_by_one() {
         let track = Track::incline(30.0, 400.0).unwrap();
-        let path = Path { track: &track, depth: 1.0 };
+        let path = Path::new(&track, 1.0);
         let number = Number::new;
         let release = Release { distance: number(0.0), speed: number(2.0) };
         let times = [0.0, 1.0, 2.5, 9.0];

@@ -5,6 +5,7 @@
 //! 1). The track is a chain of pieces of constant slope, and on a piece every
 //! law of the form r = A + B u + C u^2 has an exact solution.
 
+pub(crate) mod depth;
 pub mod forces;
 pub mod friction;
 pub mod track;
@@ -25,10 +26,10 @@ mod slopes;
 mod walk;
 
 pub use changed::{rest_changed, sample_changed};
+pub use depth::{Depth, DepthRows, DepthSteps};
 pub use forces::Forces;
 pub use friction::{Friction, Rate, Site, Sum, Varies};
 pub use lanes::speeds;
-pub(crate) use motion::site;
 pub use motion::{Path, Release, Rest, State};
 pub use sample::{rest, sample};
 pub use track::Track;

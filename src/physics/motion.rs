@@ -4,18 +4,77 @@
 //! and the state at any time on it. Sampling a flow at given times and
 //! following it to rest are written once, over every walker.
 
-use super::friction::Site;
-use super::track::{Piece, Track};
+use super::depth::DepthSteps;
+use super::forces::NEAR;
+use super::friction::{Friction, Rate, Site, Varies};
+use super::track::Track;
 use crate::error::Stop;
 use crate::scalar::{Kind, Real};
 
-/// The ground a flow runs on: the track and the flow depth \[m\].
+/// The ground a flow runs on: the track and the flow depth.
 #[derive(Debug, Clone, Copy)]
 pub struct Path<'a> {
-    /// The terrain.
+    /// The terrain, with the flow depth where that changes along it.
     pub track: &'a Track,
-    /// The mean flow depth \[m\].
+    /// The mean flow depth \[m\], where it does not change.
     pub depth: f64,
+    /// How it changes with time.
+    steps: Option<&'a DepthSteps>,
+}
+
+impl<'a> Path<'a> {
+    /// A track on which the flow has one depth \[m\], but where the track
+    /// itself says otherwise.
+    pub fn new(track: &'a Track, depth: f64) -> Self {
+        Self { track, depth, steps: None }
+    }
+
+    /// The same with a depth that changes with time.
+    pub(crate) fn during(self, steps: Option<&'a DepthSteps>) -> Self {
+        Self { steps, ..self }
+    }
+
+    /// How the depth changes with time, where it does.
+    pub(super) fn steps(&self) -> Option<&'a DepthSteps> {
+        self.steps
+    }
+
+    /// Whether the depth is one number.
+    pub(super) fn is_even(&self) -> bool {
+        self.steps.is_none() && !self.track.has_depths()
+    }
+
+    /// A law's rates at a time \[s\], where they are the same on all pieces.
+    #[inline(always)]
+    pub(super) fn uniform<K: Kind, L: Friction<K> + ?Sized>(
+        &self,
+        law: &L,
+        index: usize,
+        time: f64,
+    ) -> Option<Rate<K>> {
+        let even = law.varies() == Varies::Nowhere && !self.track.has_depths();
+        even.then(|| law.rate(&self.site(index, time), Real::new(0.0)))
+    }
+
+    /// A piece, as laws see it from a time \[s\] on.
+    #[inline]
+    pub(crate) fn site(&self, index: usize, time: f64) -> Site {
+        let piece = &self.track.pieces()[index];
+        let endless = !piece.length.is_finite();
+        let half = if endless { 0.0 } else { 0.5 * piece.length };
+        let depth = match (self.track.depth_on(index), self.steps) {
+            (Some(depth), _) => depth,
+            (None, Some(steps)) => steps.at(time, NEAR),
+            (None, None) => self.depth,
+        };
+        Site {
+            distance: piece.start + half,
+            pull: piece.pull,
+            load: piece.load,
+            curvature: piece.curvature,
+            depth,
+        }
+    }
 }
 
 /// How the mass starts.
@@ -117,18 +176,6 @@ pub(super) fn follow<K: Kind>(
         walker.leap(f64::INFINITY)?;
     }
     Ok(None)
-}
-
-/// The site of a piece, as laws see it.
-pub(crate) fn site(piece: &Piece, depth: f64) -> Site {
-    let half = if piece.length.is_finite() { 0.5 * piece.length } else { 0.0 };
-    Site {
-        distance: piece.start + half,
-        pull: piece.pull,
-        load: piece.load,
-        curvature: piece.curvature,
-        depth,
-    }
 }
 
 /// The piece at the start and how far into it the mass stands.

@@ -1,5 +1,6 @@
 //! The terrain along the flow line, as a chain of pieces of constant slope.
 
+use super::depth::DepthRows;
 use crate::error::{Error, Result};
 use crate::physics::GRAVITY;
 
@@ -55,6 +56,9 @@ impl Columns {
     }
 }
 
+/// Places on a track nearer than this are the same \[m\].
+const SAME: f64 = 1e-6;
+
 /// The terrain along the flow line.
 ///
 /// Beyond its last point the track goes on at its last slope, so that a
@@ -75,6 +79,8 @@ pub struct Track {
     x: Vec<f64>,
     z: Vec<f64>,
     origin: f64,
+    /// The flow depth on each piece \[m\]; none where it is the same on all.
+    depths: Vec<f64>,
 }
 
 impl Track {
@@ -218,6 +224,73 @@ impl Track {
         (self.x[i] + along * piece.load, self.z[i] - along * piece.pull)
     }
 
+    /// The same track with a flow depth over horizontal distance, cut into
+    /// pieces on which it is nearly constant. Where the track goes on beyond
+    /// its last point, the depth there holds.
+    ///
+    /// # Errors
+    /// A vertical track, on which horizontal distance says nothing.
+    pub(crate) fn with_depths(&self, rows: &DepthRows) -> Result<Self> {
+        let last = self.x.len() - 1;
+        if self.x[last] <= self.x[0] {
+            return Err(Error::input(
+                "the track is vertical, and a flow depth over x says nothing \
+                 there; give the depth over t, or one number",
+            ));
+        }
+        let cuts = rows.cuts();
+        let mut track = Self { origin: self.origin, ..Self::bare() };
+        for (i, piece) in self.pieces[..last].iter().enumerate() {
+            let (from, to) = (self.x[i], self.x[i + 1]);
+            track.cut(piece, [from, self.z[i]], to, &cuts, rows);
+        }
+        track.x.push(self.x[last]);
+        track.z.push(self.z[last]);
+        track.depths.push(rows.at(self.x[last]));
+        track.extend();
+        Ok(track)
+    }
+
+    /// Appends a piece from a point to a horizontal distance, in parts that
+    /// end at the cuts.
+    fn cut(
+        &mut self,
+        piece: &Piece,
+        [mut from, mut z]: [f64; 2],
+        to: f64,
+        cuts: &[f64],
+        rows: &DepthRows,
+    ) {
+        let first = cuts.partition_point(|cut| *cut <= from);
+        let inner = cuts[first..].iter().take_while(|cut| **cut < to - SAME);
+        let mut start = piece.start;
+        for &next in inner.chain([&to]) {
+            if next - from < SAME && next < to {
+                continue;
+            }
+            let length = (next - from) * GRAVITY / piece.load;
+            // The last part ends where the piece does, to the last digit.
+            let left = piece.start + piece.length - start;
+            let length = if next < to { length } else { left };
+            self.pieces.push(Piece { start, length, ..*piece });
+            self.depths.push(rows.mean(from, next));
+            self.x.push(from);
+            self.z.push(z);
+            z -= length * piece.pull / GRAVITY;
+            (start, from) = (start + length, next);
+        }
+    }
+
+    /// Whether the flow depth differs from piece to piece.
+    pub(super) fn has_depths(&self) -> bool {
+        !self.depths.is_empty()
+    }
+
+    /// The flow depth on a piece \[m\], where it differs from piece to piece.
+    pub(super) fn depth_on(&self, index: usize) -> Option<f64> {
+        self.depths.get(index).copied()
+    }
+
     fn extend(&mut self) {
         let last = self.pieces[self.pieces.len() - 1];
         self.pieces.push(Piece {
@@ -233,7 +306,7 @@ impl Track {
     fn bare() -> Self {
         let columns = Columns::default();
         let (pieces, x, z) = (Vec::new(), Vec::new(), Vec::new());
-        Self { pieces, columns, x, z, origin: 0.0 }
+        Self { pieces, columns, x, z, origin: 0.0, depths: Vec::new() }
     }
 
     /// The pieces' numbers, side by side.

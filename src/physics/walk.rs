@@ -2,9 +2,9 @@
 
 use super::ahead::Ahead;
 use super::exact::{End, Force, Pace};
-use super::friction::{Friction, Rate, Varies};
+use super::friction::{Friction, Rate, Site, Varies};
 use super::motion::{
-    Path, Release, Rest, State, Walker, first_piece, site, visit_times,
+    Path, Release, Rest, State, Walker, first_piece, visit_times,
 };
 use super::resistance::Even;
 use super::skim::{Crossing, Entry, skim_even};
@@ -91,7 +91,7 @@ impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
         let pieces = path.track.pieces();
         let zero = Real::new(0.0);
         let uniform = (law.varies() == Varies::Nowhere)
-            .then(|| law.rate(&site(&pieces[index], path.depth), zero));
+            .then(|| law.rate(&path.site(index, 0.0), zero));
         let mut walker = Self {
             track: path.track,
             pieces,
@@ -123,7 +123,7 @@ impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
         let piece = &self.pieces[self.index];
         let rate = match &self.uniform {
             Some(rate) => *rate,
-            None => self.law.rate(&site(piece, self.depth), Real::new(0.0)),
+            None => self.law.rate(&self.site(), Real::new(0.0)),
         };
         if rate.pressed.is_constantly_zero() {
             return self.begin(piece, &rate);
@@ -207,6 +207,12 @@ impl<'a, K: Kind, L: Friction<K>> ExactWalker<'a, K, L> {
         self.end = End::Never;
         self.ends = f64::INFINITY;
         self.resting = true;
+    }
+
+    /// The piece it is on, as laws see it.
+    #[inline(always)]
+    fn site(&self) -> Site {
+        Path::new(self.track, self.depth).site(self.index, 0.0)
     }
 
     fn place(&self) -> Real<K> {
@@ -341,7 +347,7 @@ impl<K: Kind, L: Friction<K>> ExactWalker<'_, K, L> {
         let piece = &self.pieces[self.index];
         let rate = match &self.uniform {
             Some(rate) => *rate,
-            None => self.law.rate(&site(piece, self.depth), Real::new(0.0)),
+            None => self.law.rate(&self.site(), Real::new(0.0)),
         };
         // Along one piece the speed changes one way only: no second crossing.
         self.begin_bent(piece, &rate, None)

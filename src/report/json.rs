@@ -2,7 +2,10 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{CalibrationReport, Checks, EvidenceReport, ParameterReport};
+use super::{
+    CalibrationReport, Checks, EvidenceReport, LawReport, NoiseReport,
+    ParameterReport,
+};
 
 /// `calibration.json`, schema 1; numbers that are not finite are null.
 ///
@@ -18,12 +21,15 @@ pub fn calibration_json(report: &CalibrationReport) -> Value {
         .iter()
         .map(|p| (p.name.clone(), parameter(p)))
         .collect();
-    let mut model =
-        json!({"friction": report.friction, "noise": report.noise});
+    let mut model = json!({"friction": report.friction});
+    model["noise"] = match report.noises.is_empty() {
+        true => json!(report.noise),
+        false => json!("infer"),
+    };
     if !report.mechanisms.is_empty() {
         model["mechanisms"] = json!(report.mechanisms);
     }
-    json!({
+    let mut document = json!({
         "schema": 1,
         "event": report.event,
         "model": model,
@@ -32,8 +38,60 @@ pub fn calibration_json(report: &CalibrationReport) -> Value {
         "parameters": parameters,
         "log_evidence": report.evidence.as_ref().map(evidence),
         "checks": checks(&report.checks),
+        "notes": report.notes,
         "simulations": report.simulations,
+        "warnings": report.warnings,
+        "doubts": report.doubts,
+    });
+    if let Some(why) = &report.backend_why {
+        document["backend_why"] = json!(why);
+    }
+    if !report.noises.is_empty() {
+        document["noise"] = report.noises.iter().map(noise).collect();
+    }
+    if let Some(found) = &report.law {
+        document["law"] = law(found);
+    }
+    document
+}
+
+/// As in `diagnosis.json`.
+fn noise(n: &NoiseReport) -> Value {
+    json!({
+        "name": n.name,
+        "tails": if n.has_tails { "student" } else { "normal" },
+        "size": if n.grows { "growing" } else { "equal" },
+        "probability": n.probability,
+        "log10_bayes_factor": n.log10_bayes_factor,
+        "parameters": figures(&n.parameters),
     })
+}
+
+/// As in `diagnosis.json`, with what speaks for the force.
+fn law(law: &LawReport) -> Value {
+    let used = match law.needs_force() {
+        true => "with_free_form_force",
+        false => "as_it_was",
+    };
+    json!({
+        "as_it_was": figures(&law.as_it_was),
+        "with_free_form_force": figures(&law.with_free_form_force),
+        "log10_bayes_factor": law.log10_bayes_factor,
+        "differs": law.differs,
+        "use": used,
+    })
+}
+
+/// Parameters as `diagnosis.json` has them.
+fn figures(parameters: &[ParameterReport]) -> Value {
+    let one = |p: &ParameterReport| {
+        let value = json!({
+            "mean": p.mean, "sd": p.sd, "q05": p.q05, "q50": p.q50,
+            "q95": p.q95, "unit": p.unit,
+        });
+        (p.name.clone(), value)
+    };
+    Value::Object(parameters.iter().map(one).collect())
 }
 
 // serde_json turns numbers that are not finite into null.
@@ -91,13 +149,16 @@ mod tests {
             [
                 "backend",
                 "checks",
+                "doubts",
                 "event",
                 "log_evidence",
                 "model",
+                "notes",
                 "parameters",
                 "schema",
                 "seed",
-                "simulations"
+                "simulations",
+                "warnings"
             ]
         );
         assert_eq!(keys(&json["parameters"]["mu"]).len(), 13);

@@ -10,6 +10,8 @@ pub(crate) mod digits;
 #[cfg(test)]
 pub(crate) mod fixture;
 mod json;
+mod law;
+mod noises;
 #[cfg(feature = "pages")]
 mod page;
 pub mod svg;
@@ -19,6 +21,8 @@ mod words;
 
 pub use crate::predict::Bands;
 pub use json::calibration_json;
+pub use law::LawReport;
+pub use noises::{NoiseReport, noises};
 #[cfg(feature = "pages")]
 pub use page::page;
 #[cfg(feature = "pages")]
@@ -41,6 +45,8 @@ pub struct CalibrationReport {
     pub mechanisms: Vec<String>,
     /// The backend that ran: `mh`.
     pub backend: String,
+    /// Why it did, where nobody asked for it.
+    pub backend_why: Option<String>,
     /// The seed of every random draw.
     pub seed: u64,
     /// What was recorded: `velocity`, `position` or `acceleration`.
@@ -56,6 +62,8 @@ pub struct CalibrationReport {
     pub times: Vec<f64>,
     /// The recording, in `unit`.
     pub values: Vec<f64>,
+    /// How the recording was thinned beforehand, in sentences.
+    pub notes: Vec<String>,
     /// Standard errors of the values, where the recording gives them.
     pub standard_errors: Option<Vec<f64>>,
     /// What the posterior predicts.
@@ -72,6 +80,12 @@ pub struct CalibrationReport {
     pub autocorrelation: Vec<f64>,
     /// The evidence, where the backend estimates it.
     pub evidence: Option<EvidenceReport>,
+    /// The noises that it was averaged over, most probable first; empty where
+    /// the noise was named. What is not of the motion is then of the first.
+    pub noises: Vec<NoiseReport>,
+    /// The law's parameters with the rest of the physics left open, where
+    /// that was asked for.
+    pub law: Option<LawReport>,
     /// Checks of the fit.
     pub checks: Checks,
     /// Acceptance rate of each chain; empty where none applies.
@@ -82,11 +96,29 @@ pub struct CalibrationReport {
     pub seconds: f64,
     /// What the reader has to know before trusting the result.
     pub warnings: Vec<String>,
+    /// Those of the warnings for which the result should not be used.
+    pub doubts: Vec<String>,
     /// Whether the recording was simulated, not measured.
     pub synthetic: bool,
 }
 
 impl CalibrationReport {
+    /// What stands before "errors".
+    fn errors_told(&self) -> &str {
+        match self.noises.is_empty() {
+            true => &self.noise,
+            false => "inferred",
+        }
+    }
+
+    /// The backend, and why it is the one where nobody asked for it.
+    pub(crate) fn backend_told(&self) -> String {
+        match &self.backend_why {
+            Some(why) => format!("{} (picked since {why})", self.backend),
+            None => self.backend.clone(),
+        }
+    }
+
     /// What stands behind "errors" where mechanisms were added.
     fn terms(&self) -> String {
         match self.mechanisms.is_empty() {

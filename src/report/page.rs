@@ -7,8 +7,8 @@ use super::digits::{
 };
 use super::svg::{Picture, pictures};
 use super::text::{plain, unit};
-use super::words::in_words;
-use super::{CalibrationReport, ParameterReport};
+use super::words::sentences;
+use super::{CalibrationReport, NoiseReport, ParameterReport};
 
 const STYLE: &str = include_str!("page.css");
 
@@ -28,6 +28,8 @@ pub fn page(report: &CalibrationReport) -> String {
             (heading(report))
             (words(report))
             (table(&report.parameters))
+            (noises(report))
+            (law(report))
             @for picture in pictures(report) { (figure(&picture)) }
             (computed(report))
         },
@@ -58,7 +60,7 @@ fn heading(report: &CalibrationReport) -> Markup {
         p.sub {
             @if report.synthetic { span.synthetic { "synthetic data" } " " }
             "Calibration of " (plain(&report.friction)) " friction with "
-            (plain(&report.noise)) " errors" (plain(&report.terms())) " on " (plain(&report.quantity))
+            (plain(report.errors_told())) " errors" (plain(&report.terms())) " on " (plain(&report.quantity))
         }
     }
 }
@@ -66,7 +68,7 @@ fn heading(report: &CalibrationReport) -> Markup {
 fn words(report: &CalibrationReport) -> Markup {
     html! {
         ul.words {
-            @for sentence in in_words(report) { li { (unbroken(&sentence)) } }
+            @for sentence in sentences(report) { li { (unbroken(&sentence)) } }
         }
         @if !report.warnings.is_empty() {
             div.warning role="note" {
@@ -111,6 +113,71 @@ fn table(parameters: &[ParameterReport]) -> Markup {
                  are worth, 400 or more are enough."
             }
         }
+    }
+}
+
+/// The noises that the calibration was averaged over.
+fn noises(report: &CalibrationReport) -> Markup {
+    if report.noises.is_empty() {
+        return html! {};
+    }
+    let factor = |n: &NoiseReport| n.factor_told().replace('-', "−");
+    html! {
+        h2 { "What made the errors" }
+        div.wide { table {
+            thead { tr {
+                @for heading in
+                    ["noise", "probability", "log10 Bayes factor", "parameters"]
+                {
+                    th scope="col" { (heading) }
+                }
+            } }
+            tbody { @for n in &report.noises { tr {
+                td.name { (plain(&n.name)) }
+                td { (n.probability_told()) }
+                td { (factor(n)) }
+                td { (sizes(&n.parameters)) }
+            } } }
+        } }
+        p.note {
+            "The parameters of the motion are averaged over these; those of \
+             the errors, the mode, the draws in the pictures, the checks and \
+             the predictions are of the first. The Bayes factor is against \
+             errors that are correlated in time."
+        }
+    }
+}
+
+/// Parameters with their 90 % intervals, in one line.
+fn sizes(parameters: &[ParameterReport]) -> String {
+    let one = |p: &ParameterReport| {
+        let of = |x| beside(x, p.sd);
+        let unit = match p.unit_shown().as_str() {
+            "" => String::new(),
+            unit => format!(" {unit}"),
+        };
+        let (middle, low, high) = (of(p.q50), of(p.q05), of(p.q95));
+        format!("{} {middle}{unit} ({low} to {high})", plain(&p.name))
+    };
+    let all: Vec<String> = parameters.iter().map(one).collect();
+    all.join(", ").replace('-', "−")
+}
+
+/// The law's parameters, without and with a force of free form.
+fn law(report: &CalibrationReport) -> Markup {
+    let Some(law) = &report.law else { return html! {} };
+    let rows = [
+        ("as calibrated", &law.as_it_was),
+        ("with a force of free form", &law.with_free_form_force),
+    ];
+    html! {
+        h2 { "The friction law, whatever else may act" }
+        div.wide { table {
+            tbody { @for (which, parameters) in rows { tr {
+                td.name { (which) }
+                td { (sizes(parameters)) }
+            } } }
+        } }
     }
 }
 
@@ -181,7 +248,7 @@ fn facts(report: &CalibrationReport) -> Vec<(&'static str, String)> {
         ("friction", report.friction.clone()),
         ("errors", report.noise.clone()),
         ("recording", recording(report)),
-        ("backend", report.backend.clone()),
+        ("backend", report.backend_told()),
         ("seed", report.seed.to_string()),
         ("simulations", grouped(report.simulations)),
         ("duration", format!("{seconds} s")),

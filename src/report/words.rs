@@ -1,8 +1,9 @@
 //! The result in sentences that a snow scientist can check.
 
 use super::digits::{beside, p_value, per_cent, significant};
+use super::noises::averaged;
 use super::text::unit;
-use super::{CalibrationReport, ParameterReport};
+use super::{CalibrationReport, LawReport, ParameterReport};
 
 /// The largest R-hat of chains that agree (Vehtari and others, 2021).
 const RHAT_AGREES: f64 = 1.01;
@@ -17,8 +18,8 @@ const SMOOTH: f64 = 6.0;
 /// How many parameters a sentence lists.
 const LISTED: usize = 6;
 
-/// The result in five to nine plain sentences; the first says where the model
-/// does not fit.
+/// The result in some plain sentences, and one for each warning; the
+/// first says where the model does not fit.
 ///
 /// ```
 /// use couloir::report::{CalibrationReport, in_words};
@@ -26,19 +27,31 @@ const LISTED: usize = 6;
 /// assert!(words[0].contains("0 values"));
 /// ```
 pub fn in_words(report: &CalibrationReport) -> Vec<String> {
+    let mut words = sentences(report);
+    let warnings = report.warnings.iter();
+    words.extend(
+        warnings.map(|w| format!("Warning: {}.", w.trim_end_matches('.'))),
+    );
+    words
+}
+
+/// The same without the warnings.
+pub(super) fn sentences(report: &CalibrationReport) -> Vec<String> {
     [
         misfit(report),
         Some(subject(report)),
         friction(report),
+        averaged(report),
+        report.law.as_ref().and_then(LawReport::told),
         Some(errors(report)),
         Some(coverage(report)),
         Some(chains(report)),
         Some(residuals(report)),
         evidence(report),
-        warnings(report),
     ]
     .into_iter()
     .flatten()
+    .chain(report.notes.iter().cloned())
     .collect()
 }
 
@@ -88,7 +101,7 @@ fn subject(report: &CalibrationReport) -> String {
         "{} friction with {} errors{} was calibrated on {n} {values} of \
          {}{span}{window}, from the event “{}”{origin}.",
         capital(&report.friction),
-        report.noise,
+        report.errors_told(),
         report.terms(),
         report.quantity,
         report.event,
@@ -274,14 +287,6 @@ fn evidence(report: &CalibrationReport) -> Option<String> {
         beside(e.value, e.se),
         e.method
     ))
-}
-
-fn warnings(report: &CalibrationReport) -> Option<String> {
-    let first = report.warnings.first()?.trim_end_matches('.');
-    Some(match report.warnings.len() {
-        1 => format!("Warning: {first}."),
-        n => format!("{n} warnings, of which the first: {first}."),
-    })
 }
 
 #[cfg(test)]

@@ -383,6 +383,24 @@ const GROUND: &[Edit] = &[
         &["event.toml:11: flow.depth is no decimal number"],
     ),
     (
+        "depth-in-quotes",
+        "1.5",
+        "\"1.5\"",
+        &["event.toml:11: flow.depth is the text \"1.5\"", "drop the quotes"],
+    ),
+    (
+        "depth-file-missing",
+        "1.5",
+        "\"depth.csv\"",
+        &["event.toml:11: flow.depth", "depth.csv: does not exist"],
+    ),
+    (
+        "depth-file-is-a-track",
+        "1.5",
+        "\"track.csv\"",
+        &["track.csv:1: the header is \"x,z\"", "\"t,depth\"", "[m]"],
+    ),
+    (
         "depth-enormous",
         "1.5",
         "1e300",

@@ -13,6 +13,7 @@ pub(in crate::challenge) fn truth(effect: &str) -> Truth {
         interval: (effect == "friction-patch").then(|| place(100.0, 150.0)),
         size: kind.range.1,
         unit: kind.unit,
+        scatter: Scatter::of_effect(kind.name),
         noise_sd: 0.3,
         noise_rms: 0.31,
         gain: 20.0,
@@ -45,6 +46,8 @@ pub(in crate::challenge) fn outcome(
             mismatch: vec![place(100.0, 150.0)],
             rmse_before: 2.0,
             rmse_after: 0.3,
+            least_squares_before: 1.9,
+            least_squares_after: 0.29,
             heldout_rmse_after: 0.3,
             seconds: 1.0,
         },
@@ -143,4 +146,33 @@ fn outside_the_catalogue_unknown_and_a_good_fit_are_fair() {
     assert_eq!(score.outside.unknown, Share { hits: 1, of: 3 });
     assert_eq!(score.outside.explained, Share { hits: 1, of: 3 });
     assert_eq!((score.top1.of, failures(&all).len()), (0, 1));
+}
+
+/// Of errors that are not those of the event's file, saying so is neither a
+/// false alarm nor a discovery.
+#[test]
+fn errors_beside_an_effect_are_scored_apart() {
+    let real = |effect: &str, verdict: &str, noise: &str| {
+        let mut one = outcome(effect, effect, 0.9);
+        one.truth.scatter = Scatter::Smooth;
+        one.answer.verdict = verdict.to_owned();
+        one.answer.noises = vec![(noise.to_owned(), 0.8)];
+        one
+    };
+    let mut worse = real("surge", "noise", "ar(1)");
+    worse.answer.rmse_after = 2.5;
+    worse.answer.least_squares_after = 1.9;
+    let all = [
+        real("none", "noise", "matern32 + white"),
+        real("none", "measurement", "matern32 + white + growth"),
+        real("surge", "missing-physics", "ou + white"),
+        worse,
+    ];
+    let score = Score::of(&all);
+    assert_eq!(score.false_alarms, Share { hits: 1, of: 2 });
+    assert_eq!(score.detected, Share { hits: 1, of: 2 });
+    assert_eq!(score.noise_kind, Share { hits: 2, of: 4 });
+    assert_eq!(score.noise_kinds, [(Scatter::Smooth, score.noise_kind)]);
+    assert_eq!(score.worse, Share { hits: 1, of: 4 });
+    assert_eq!(score.worse_at_best, Share { hits: 0, of: 4 });
 }

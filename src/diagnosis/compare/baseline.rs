@@ -20,6 +20,7 @@ pub(crate) fn baseline(
     Baseline {
         friction: options.friction.clone(),
         noise: options.noise.clone(),
+        infers_noise: options.infers_noise,
         mechanisms: options.labels(),
         log_evidence: none.log_evidence,
         rmse: old.rmse,

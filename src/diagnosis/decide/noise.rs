@@ -14,13 +14,12 @@ use crate::noise::{self, Form};
 /// one to take its place.
 const RISE: f64 = 1.0;
 
-/// The noise that the model goes on with: the named one, or the most probable
-/// where that is more probable by far. `logs` are ln of their probabilities,
-/// up to a constant.
-pub(crate) fn taken<P: Program>(table: &Table<'_, P>, logs: &[f64]) -> usize {
+/// The noise that the model goes on with: the named one, if any, or the most
+/// probable where that is more probable by far. `logs` are ln of their
+/// probabilities, up to a constant.
+pub(crate) fn taken(named: Option<usize>, logs: &[f64]) -> usize {
     let more = |a: &usize, b: &usize| logs[*a].total_cmp(&logs[*b]);
     let best = (0..logs.len()).max_by(more).unwrap_or(0);
-    let named = table.named();
     let near = |i: &usize| logs[best] - logs[*i] < RISE * LN_10;
     named.filter(near).unwrap_or(best)
 }

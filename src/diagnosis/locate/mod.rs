@@ -211,7 +211,10 @@ pub(crate) fn left<P: Program>(
 }
 
 /// The same along every axis; most sharply where the force is likely.
-pub(super) fn locate_all<P: Program>(
+///
+/// # Errors
+/// As [`locate`].
+pub(crate) fn locate_all<P: Program>(
     program: &P,
     extent: &Extent,
     none: &Fit,

@@ -116,6 +116,7 @@ fn force_json(force: &FreeForce) -> Value {
 fn baseline_json(b: &Baseline) -> Value {
     json!({
         "friction": b.friction, "noise": b.noise,
+        "noise_inferred": b.infers_noise,
         "mechanisms": b.mechanisms,
         "log_evidence": b.log_evidence, "rmse": b.rmse,
         "ljung_box_p": b.ljung_box_p, "shapiro_wilk_p": b.shapiro_wilk_p,
@@ -184,6 +185,8 @@ impl Diagnosis {
             "separating": self.separating,
             "seconds": self.seconds,
             "warnings": self.warnings,
+            "notes": self.notes,
+            "doubts": self.doubts,
         })
     }
 }

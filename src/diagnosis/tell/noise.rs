@@ -5,12 +5,22 @@ use crate::diagnosis::{Diagnosis, JudgedNoise, Verdict};
 use crate::noise::Form;
 use crate::report::text::plain;
 
-/// What the errors are taken for, where that is not the named noise.
+/// What the errors are taken for, where that is not the named noise, or none
+/// was named.
 pub(crate) fn noise(d: &Diagnosis) -> Option<String> {
     if !is_other(d) {
         return None;
     }
     let taken = d.noise.iter().find(|n| n.name == d.selected_noise)?;
+    if d.baseline.infers_noise {
+        return Some(format!(
+            "No noise was named: the errors are taken for {} ({}, probability \
+             {}).",
+            called(taken),
+            plain(&taken.name),
+            probability(taken.probability),
+        ));
+    }
     let named = plain(&d.baseline.noise);
     let against = log10(taken.log10_bayes_factor).replace('-', "−");
     Some(format!(
@@ -24,6 +34,9 @@ pub(crate) fn noise(d: &Diagnosis) -> Option<String> {
 
 /// Whether the model goes on with another noise than the named one.
 pub(crate) fn is_other(d: &Diagnosis) -> bool {
+    if d.baseline.infers_noise {
+        return !d.noise.is_empty();
+    }
     let adequate = d.verdict == Verdict::Adequate;
     let named = d.noise.is_empty() || d.selected_noise == d.baseline.noise;
     !adequate && !named
@@ -73,5 +86,10 @@ mod tests {
              with outliers (matern32 + white + tails, probability 0.30), a \
              log10 Bayes factor of +3.1 against iid."
         );
+        // Where none was named, there is nothing to be against.
+        d.baseline.infers_noise = true;
+        let said = noise(&d).unwrap();
+        assert!(said.starts_with("No noise was named: the errors"), "{said}");
+        assert!(said.ends_with("white + tails, probability 0.30)."), "{said}");
     }
 }

@@ -66,6 +66,7 @@ pub(crate) fn friction(b: &Baseline) -> String {
 pub(crate) fn model(b: &Baseline) -> String {
     match b.noise.trim() {
         "" => friction(b),
+        _ if b.infers_noise => format!("{} with inferred errors", friction(b)),
         noise => format!("{} with {} errors", friction(b), plain(noise)),
     }
 }

@@ -7,7 +7,6 @@ use crate::diagnosis::locate::{FreeForce, Stretch};
 use crate::mechanism::Reach;
 use crate::observe::Event;
 use crate::physics::forces::Axis;
-use crate::physics::site;
 
 /// Runs of the free-form force nearer than this are one \[m\].
 const NEAR: f64 = 25.0;
@@ -273,12 +272,12 @@ fn way(event: &Event, times: &[f64], places: &[f64]) -> Vec<Passing> {
         let (before, after) = (i.saturating_sub(1), (i + 1).min(last));
         let lapse = (times[after] - times[before]).max(f64::MIN_POSITIVE);
         let on = (places[i] - track.origin()).max(0.0);
-        let piece = &track.pieces()[track.piece_at(on)];
+        let piece = track.piece_at(on);
         Passing {
             place: places[i],
             time: times[i],
             speed: (places[after] - places[before]) / lapse,
-            site: site(piece, event.depth()),
+            site: event.path().site(piece, times[i]),
         }
     };
     (0..times.len()).map(point).collect()

@@ -42,6 +42,7 @@ pub fn in_words(d: &Diagnosis) -> Vec<String> {
         said.extend(fit_as_it_is(d));
         said.push(residuals(&d.baseline));
         said.extend(nearest(d));
+        said.extend(noise(d));
         said.push(silence());
         said.extend(law(d));
     } else {
@@ -66,6 +67,7 @@ pub fn in_words(d: &Diagnosis) -> Vec<String> {
         said.extend(ambiguity(d));
     }
     said.extend(trap(d));
+    said.extend(d.notes.iter().cloned());
     said.extend(warnings(d));
     said
 }

@@ -339,10 +339,10 @@ impl Backend for MetropolisHastings {
             .map(|start| self.chain(posterior, start, seed, progress))
             .collect::<Result<_>>()?;
         let mut draws = draws_of(posterior)?;
-        let mut warnings = Vec::new();
+        let mut hints = Vec::new();
         for (index, (rows, acceptance)) in chains.into_iter().enumerate() {
             if !(0.05..=0.7).contains(&acceptance) {
-                warnings.push(format!(
+                hints.push(format!(
                     "chain {} accepted {:.0} % of its proposals; 20 to 40 % \
                      is healthy: give it a longer warm-up",
                     index + 1,
@@ -351,6 +351,6 @@ impl Backend for MetropolisHastings {
             }
             draws.push_chain(rows, Some(acceptance))?;
         }
-        Ok(Inference { draws: Some(draws), warnings, ..Inference::default() })
+        Ok(Inference { draws: Some(draws), hints, ..Inference::default() })
     }
 }

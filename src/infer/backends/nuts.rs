@@ -162,25 +162,34 @@ impl Nuts {
                 sum(|c| c.at_edge)
             ));
         }
-        let short = sum(|c| c.cut_short);
+        warnings
+    }
+
+    /// What would have made a better run.
+    fn hints(&self, courses: &[Course]) -> Vec<String> {
+        let sum = |count: fn(&Course) -> usize| -> usize {
+            courses.iter().map(count).sum()
+        };
+        let (draws, short) = (sum(|c| c.draws), sum(|c| c.cut_short));
+        let mut hints = Vec::new();
         if short > 0 {
-            warnings.push(format!(
+            hints.push(format!(
                 "{short} of {draws} paths were cut at depth {}: the draws are \
                  more alike than they need be; give it a longer warm-up",
                 self.max_depth
             ));
         }
-        warnings.extend(self.untuned(courses));
-        warnings
+        hints.extend(self.untuned(courses));
+        hints
     }
 
-    /// A warning for each chain far from the acceptance aimed at.
+    /// A hint for each chain far from the acceptance aimed at.
     fn untuned(&self, courses: &[Course]) -> Vec<String> {
-        let mut warnings = Vec::new();
+        let mut hints = Vec::new();
         for (index, course) in courses.iter().enumerate() {
             let acceptance = course.mean_acceptance();
             if acceptance < self.target - FAR {
-                warnings.push(format!(
+                hints.push(format!(
                     "chain {} accepted {:.0} % along its paths, {:.0} % were \
                      aimed at: give it a longer warm-up",
                     index + 1,
@@ -189,7 +198,7 @@ impl Nuts {
                 ));
             }
         }
-        warnings
+        hints
     }
 }
 
@@ -387,8 +396,12 @@ impl Backend for Nuts {
             draws.push_chain(rows, Some(course.mean_acceptance()))?;
             courses.push(course);
         }
-        let warnings = self.warn(&courses);
-        Ok(Inference { draws: Some(draws), warnings, ..Inference::default() })
+        Ok(Inference {
+            draws: Some(draws),
+            warnings: self.warn(&courses),
+            hints: self.hints(&courses),
+            ..Inference::default()
+        })
     }
 }
 

@@ -82,7 +82,7 @@ fn title(report: &CalibrationReport) -> String {
         "{}: {} friction, {} errors{}{origin}",
         report.event,
         report.friction,
-        report.noise,
+        report.errors_told(),
         report.terms()
     ))
 }

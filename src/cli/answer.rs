@@ -1,0 +1,35 @@
+//! What a command answers, and whether `--strict` lets it pass.
+
+use clap::Args;
+
+/// A refusal to take a result that should not be used for one.
+#[derive(Debug, Args)]
+pub(super) struct Strict {
+    /// End with exit code 4 where the result should not be used, since chains
+    /// have not agreed, too few draws are effective, or weights cannot be
+    /// trusted; it is told and written all the same
+    #[arg(long)]
+    strict: bool,
+}
+
+impl Strict {
+    /// A result with what stands against using it.
+    pub(super) fn answer(&self, text: String, doubts: &[String]) -> Answer {
+        let refused = doubts.first().filter(|_| self.strict).cloned();
+        Answer { text, refused }
+    }
+}
+
+/// What a command prints.
+#[derive(Debug)]
+pub(super) struct Answer {
+    pub(super) text: String,
+    /// Why it should not be used, where that was to be told by the exit code.
+    pub(super) refused: Option<String>,
+}
+
+impl From<String> for Answer {
+    fn from(text: String) -> Self {
+        Self { text, refused: None }
+    }
+}

@@ -1,0 +1,64 @@
+//! `--rate` and `--thin`: an event with fewer values a second.
+
+use clap::Args;
+
+use crate::error::Result;
+use crate::observe::{Event, Thinning};
+
+/// How to thin recordings.
+#[derive(Debug, Clone, Default, Args)]
+pub(super) struct Thin {
+    /// Thin the recording to about R values a second; one that has no more
+    /// stays as it is
+    #[arg(long, value_name = "R", value_parser = rate)]
+    rate: Option<f64>,
+    /// How to thin it: by the average of each of equal bins, kept as a mean
+    /// over a window (positions are picked), or by picking the last value of
+    /// each; average if left out
+    #[arg(long, value_name = "average|pick", value_parser = thinning,
+          requires = "rate")]
+    thin: Option<Thinning>,
+    /// To half the rate that is left after that.
+    #[arg(skip)]
+    halved: bool,
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(rate) if rate > 0.0 && f64::is_finite(rate) => Ok(rate),
+        _ => Err("expected values a second, more than 0".into()),
+    }
+}
+
+fn thinning(text: &str) -> Result<Thinning, String> {
+    let expected = || format!("expected {}", Thinning::NAMES.join(" or "));
+    Thinning::named(text).ok_or_else(expected)
+}
+
+impl Thin {
+    /// The same, and then half as many values.
+    pub(super) fn halved(&self) -> Self {
+        Self { halved: true, ..self.clone() }
+    }
+
+    /// Whether recordings stay as they are.
+    pub(super) fn is_none(&self) -> bool {
+        self.rate.is_none() && !self.halved
+    }
+
+    /// The event with thinner recordings, and a sentence for each.
+    pub(super) fn apply(&self, event: &Event) -> Result<(Event, Vec<String>)> {
+        let how = self.thin.unwrap_or_default();
+        let (mut event, mut said) = (event.clone(), Vec::new());
+        if let Some(rate) = self.rate {
+            let (thin, done) = event.thinned(rate, how)?;
+            said.extend(done.iter().map(ToString::to_string));
+            event = thin;
+        }
+        let own = event.recordings().next().map(|series| series.rate());
+        if let (true, Some(own)) = (self.halved, own) {
+            event = event.thinned(0.5 * own, how)?.0;
+        }
+        Ok((event, said))
+    }
+}
