@@ -46,7 +46,11 @@ impl Arguments {
         let subject =
             Subject { thin: self.thin.clone(), ..self.subject.clone() };
         let found = self.found(subject.read(laws)?)?;
-        let json = pretty(&calibration_json(&found.report));
+        let mut json = calibration_json(&found.report);
+        json["inputs"] = subject.inputs("")?.into();
+        json["program"] =
+            concat!("couloir ", env!("CARGO_PKG_VERSION")).into();
+        let json = pretty(&json);
         if let Some(folder) = &self.output.out {
             let files = [
                 ("calibration.json", json.clone()),

@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use serde_json::{Map, Value};
 
 use super::answer::{Answer, Strict};
 use super::calibrate::pretty;
@@ -82,6 +83,7 @@ impl Arguments {
         let told = Told::new();
         let (found, labels) = self.found(&subjects, laws, &told)?;
         drop(told);
+        let json = document(&found, &subjects, &labels)?;
         let mut names =
             vec!["report.html", "diagnosis.json", "draws.csv", "pictures/"];
         let mut old = None;
@@ -93,12 +95,12 @@ impl Arguments {
             } else {
                 names.push("corrected/");
             }
-            let mut files = reports(&found);
+            let mut files = reports(&found, &json);
             files.extend(again);
             write_all(folder, &files)?;
         }
         if self.output.json {
-            let json = pretty(&found.json());
+            let json = pretty(&json);
             return Ok(self.strict.answer(json, &found.doubts));
         }
         let mut text = summary(&found, width());
@@ -185,9 +187,26 @@ fn read_all(subjects: &[Subject], laws: &Laws) -> Result<Vec<Read>> {
     subjects.iter().map(|event| event.read(laws)).collect()
 }
 
-fn reports(found: &Diagnosis) -> Files {
+/// The diagnosis as JSON, with the checksums of what was read: by the events'
+/// labels, where there are several.
+fn document(
+    found: &Diagnosis,
+    subjects: &[Subject],
+    labels: &[String],
+) -> Result<Value> {
+    let mut inputs = Map::new();
+    for (i, event) in subjects.iter().enumerate() {
+        let label = labels.get(i).map_or(String::new(), |l| format!("{l}/"));
+        inputs.extend(event.inputs(&label)?);
+    }
+    let mut json = found.json();
+    json["inputs"] = Value::Object(inputs);
+    Ok(json)
+}
+
+fn reports(found: &Diagnosis, json: &Value) -> Files {
     let mut files = vec![
-        ("diagnosis.json".into(), pretty(&found.json())),
+        ("diagnosis.json".into(), pretty(json)),
         ("report.html".into(), page(found)),
     ];
     files.extend(found.draws.iter().map(|d| ("draws.csv".into(), d.to_csv())));

@@ -1,5 +1,7 @@
 //! From the command line to a model: the event, with what was changed of it.
 
+use serde_json::{Map, Value};
+
 use super::Subject;
 use crate::error::{Error, Result};
 use crate::io::{self, EventFile};
@@ -22,6 +24,15 @@ impl Subject {
     /// The event, the embedded one where none was named.
     pub(super) fn load(&self, laws: &Laws) -> Result<EventFile> {
         self.load_told(laws).map(|(file, _)| file)
+    }
+
+    /// The checksums of the files that are read, by their names after a label.
+    pub(super) fn inputs(&self, label: &str) -> Result<Map<String, Value>> {
+        let files = io::inputs(self.event.as_deref())?.into_iter();
+        let named = |(name, sum): (String, String)| {
+            (format!("{label}{name}"), sum.into())
+        };
+        Ok(files.map(named).collect())
     }
 
     /// The same, and how its recordings were thinned.

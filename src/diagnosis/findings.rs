@@ -78,6 +78,8 @@ pub struct Baseline {
     pub infers_noise: bool,
     /// The labels of the mechanisms that it had already.
     pub mechanisms: Vec<String>,
+    /// The priors of its parameters, by their names.
+    pub priors: Vec<(String, String)>,
     /// ln p(recording | model).
     pub log_evidence: f64,
     /// Of the posterior mean prediction, in the recording's unit.

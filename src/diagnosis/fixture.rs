@@ -266,6 +266,7 @@ pub(super) fn diagnosis() -> Diagnosis {
     Diagnosis {
         event: "Patch (synthetic)".to_owned(),
         baseline: Baseline {
+            priors: vec![("mu".into(), "Gamma(9, 0.03)".into())],
             friction: "voellmy".to_owned(),
             noise: "iid".to_owned(),
             log_evidence: -120.3,

@@ -8,6 +8,7 @@ use crate::mechanism::Mechanism;
 use crate::mechanism::catalogue::Catalogue;
 use crate::model::{Assembled, Together};
 use crate::noise::is_noise;
+use crate::prior::AnyPrior;
 
 /// What to know of a model before it is diagnosed.
 #[derive(Debug, Clone, Default)]
@@ -35,6 +36,8 @@ pub struct Options {
     /// The friction law's parameters, by their names; empty for all that the
     /// model has of its own.
     pub law: Vec<String>,
+    /// The priors of the model's parameters, by their names.
+    pub priors: Vec<(String, String)>,
     /// Friction and errors as `model!` declares them, where that is known.
     pub declarations: Option<[String; 2]>,
 }
@@ -55,6 +58,7 @@ impl Options {
             noise: model.noise(),
             mechanisms: model.mechanisms().cloned().collect(),
             law: model.law_names(),
+            priors: priors(model, ""),
             declarations: declarations(model),
             ..Self::default()
         }
@@ -63,7 +67,9 @@ impl Options {
     /// Those of several events under one model.
     pub fn of_all(together: &Together<Assembled>, seed: u64) -> Self {
         let mut all = Self { seed, ..Self::default() };
-        for event in together.members() {
+        for (event, label) in together.members().iter().zip(together.labels())
+        {
+            all.priors.extend(priors(event, &format!("{label}.")));
             for (text, own) in [
                 (&mut all.friction, event.friction()),
                 (&mut all.noise, event.noise()),
@@ -106,4 +112,13 @@ impl Options {
     pub(crate) fn labels(&self) -> Vec<String> {
         self.mechanisms.iter().map(|m| m.label()).collect()
     }
+}
+
+/// The priors of a model put together from an event file, by the names of
+/// their parameters after a label.
+fn priors(model: &Assembled, label: &str) -> Vec<(String, String)> {
+    let named = |(name, prior): (&str, &AnyPrior)| {
+        (format!("{label}{name}"), prior.to_string())
+    };
+    model.priors().map(named).collect()
 }

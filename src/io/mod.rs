@@ -9,6 +9,8 @@ mod csv_file;
 mod document;
 mod embedded;
 mod event_file;
+#[cfg(feature = "cli")]
+mod inputs;
 mod lines;
 mod source;
 mod template;
@@ -19,5 +21,7 @@ pub use corrected::{Correction, corrected};
 pub use csv_file::{MOST_ROWS, read_depth, read_recording, read_track};
 pub use embedded::coastdown;
 pub use event_file::{EventFile, load, parse_event};
+#[cfg(feature = "cli")]
+pub(crate) use inputs::inputs;
 pub use template::new_event;
 pub use write::write_all;

@@ -22,6 +22,7 @@ pub(crate) fn baseline(
         noise: options.noise.clone(),
         infers_noise: options.infers_noise,
         mechanisms: options.labels(),
+        priors: options.priors.clone(),
         log_evidence: none.log_evidence,
         rmse: old.rmse,
         ljung_box_p: old.ljung_box_p,

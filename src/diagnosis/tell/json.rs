@@ -113,11 +113,17 @@ fn force_json(force: &FreeForce) -> Value {
     })
 }
 
+fn priors_json(priors: &[(String, String)]) -> Value {
+    let all = priors.iter().cloned().map(|(name, prior)| (name, prior.into()));
+    Value::Object(all.collect())
+}
+
 fn baseline_json(b: &Baseline) -> Value {
     json!({
         "friction": b.friction, "noise": b.noise,
         "noise_inferred": b.infers_noise,
         "mechanisms": b.mechanisms,
+        "priors": priors_json(&b.priors),
         "log_evidence": b.log_evidence, "rmse": b.rmse,
         "ljung_box_p": b.ljung_box_p, "shapiro_wilk_p": b.shapiro_wilk_p,
         "predictive_p": b.predictive_p, "stationary_sd": b.stationary_sd,

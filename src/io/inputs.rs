@@ -1,0 +1,82 @@
+//! What was read: the files of an event with their checksums.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use sha2::{Digest, Sha256};
+use toml_edit::{DocumentMut, Item};
+
+use super::embedded;
+use super::event_file::{MOST_BYTES, find};
+use super::source::read_text;
+use crate::error::{Error, Result};
+
+/// The sections and keys of an event.toml that may name a file.
+const FILES: [(&str, &str); 3] =
+    [("track", "file"), ("recording", "file"), ("flow", "depth")];
+
+/// The files of an event by their names, each with its SHA-256: event.toml
+/// and those that it names. The event is the built-in one where no path is
+/// given.
+///
+/// # Errors
+/// Files that can no longer be read.
+pub(crate) fn inputs(
+    event: Option<&Path>,
+) -> Result<BTreeMap<String, String>> {
+    let Some(path) = event else {
+        return Ok(BTreeMap::from([
+            ("event.toml".to_owned(), sha256(embedded::EVENT)),
+            ("recording.csv".to_owned(), sha256(&embedded::recording())),
+        ]));
+    };
+    let file = find(path)?;
+    let text = read_text(&file, MOST_BYTES)?;
+    let called = file.file_name().unwrap_or_default().to_string_lossy();
+    let mut all = BTreeMap::from([(called.into_owned(), sha256(&text))]);
+    let folder = file.parent().unwrap_or(Path::new(""));
+    for name in named(&text)? {
+        let data = read_text(&folder.join(&name), u64::MAX - 1)?;
+        all.insert(name, sha256(&data));
+    }
+    Ok(all)
+}
+
+/// The files that an event.toml names.
+fn named(text: &str) -> Result<Vec<String>> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let document: DocumentMut =
+        text.parse().map_err(|_| Error::input("is not TOML any more"))?;
+    let of = |(section, key): (&str, &str)| {
+        let section = document.get(section).and_then(Item::as_table_like)?;
+        section.get(key)?.as_str().map(str::to_owned)
+    };
+    Ok(FILES.into_iter().filter_map(of).collect())
+}
+
+/// The SHA-256 of a text, in hexadecimal digits.
+fn sha256(text: &str) -> String {
+    let digest = Sha256::digest(text.as_bytes());
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_checksum_is_the_published_one() {
+        // FIPS 180-4, example of one block.
+        let known = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61\
+                     f20015ad";
+        assert_eq!(sha256("abc"), known);
+    }
+
+    #[test]
+    fn all_files_of_an_event_are_counted() {
+        let text = "[track]\nfile = \"t.csv\"\n[recording]\nfile = \"r.csv\"\n\
+                    [flow]\ndepth = 1.0\n";
+        assert_eq!(named(text).unwrap(), ["t.csv", "r.csv"]);
+        assert_eq!(inputs(None).unwrap().len(), 2);
+    }
+}
