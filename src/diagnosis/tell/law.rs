@@ -43,6 +43,10 @@ pub(super) fn law(d: &Diagnosis) -> Option<String> {
         }
     };
     let end = match agree(told, open) {
+        true if d.weak => format!(
+            "that agrees, but the verdict is weak, so use the {value} with \
+             the force"
+        ),
         true => format!("that agrees, so use the {which} {value}"),
         false => {
             format!("that does not agree, so use the {value} with the force")
@@ -115,6 +119,9 @@ mod tests {
         assert!(fits.ends_with("use the corrected value."), "{fits}");
         let off = told(Verdict::MissingPhysics, Some(0.24));
         assert!(off.ends_with("use the value with the force."), "{off}");
+        let weak = diagnosis(Verdict::MissingPhysics, Some(0.31));
+        let weak = law(&Diagnosis { weak: true, ..weak }).unwrap();
+        assert!(weak.contains("weak, so use the value with"), "{weak}");
         let alone = told(Verdict::Adequate, None);
         assert!(alone.starts_with("As calibrated, mu is 0.2"), "{alone}");
         assert!(alone.ends_with("use the value with the force."), "{alone}");
