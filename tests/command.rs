@@ -605,7 +605,7 @@ fn a_thinned_recording_says_so() {
     // 69 speeds, one a second.
     let means = run(&["--rate", "0.5"]);
     assert!(means.contains("from 69 values"), "{means}");
-    assert!(means.contains("to 34: each is the mean of 2"), "{means}");
+    assert!(means.contains("to 35: each is the mean of 1 to 2"), "{means}");
     let picked = run(&["--rate", "0.25", "--thin", "pick"]);
     assert!(picked.contains("to 17: of each 4 the last"), "{picked}");
     assert!(run(&["--rate", "7"]).contains("left as it is"));

@@ -47,8 +47,9 @@ pub struct Thinned {
     rate: f64,
     /// How many values a second there were.
     own: f64,
-    /// How many values a bin has.
+    /// How many values a bin has, and the fewest where times are uneven.
     bin: usize,
+    fewest: usize,
     /// How many values there were and are.
     from: usize,
     to: usize,
@@ -58,7 +59,7 @@ pub struct Thinned {
 
 impl fmt::Display for Thinned {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { quantity, bin, from, to, window, .. } = self;
+        let Self { quantity, bin, fewest, from, to, window, .. } = self;
         let (own, rate) = (tidy(self.own), tidy(self.rate));
         if *bin == 1 {
             return write!(
@@ -76,8 +77,13 @@ impl fmt::Display for Thinned {
         match (how(*quantity, self.asked), self.asked) {
             (Thinning::Average, _) => write!(
                 f,
-                "each is the mean of {bin}, taken as the mean of the motion \
+                "each is the mean of {}{bin}, taken as the mean of the motion \
                  over {} s; parameters of the noise are those of the means.",
+                if fewest < bin {
+                    format!("{fewest} to ")
+                } else {
+                    String::new()
+                },
                 tidy(*window)
             ),
             (_, Thinning::Pick) => write!(f, "of each {bin} the last."),
@@ -147,8 +153,18 @@ impl Event {
             let thin = series.in_bins(bin, asked)?;
             let (quantity, window) = (series.quantity(), thin.window());
             let (from, to) = (series.len(), thin.len());
-            let said =
-                Thinned { quantity, asked, rate, own, bin, from, to, window };
+            let fewest = series.fewest(bin, asked);
+            let said = Thinned {
+                quantity,
+                asked,
+                rate,
+                own,
+                bin,
+                fewest,
+                from,
+                to,
+                window,
+            };
             event = event.with_recording(thin)?;
             done.push(said);
         }
@@ -160,6 +176,12 @@ impl Series {
     /// How many values it has a second, where none is missing.
     pub fn rate(&self) -> f64 {
         self.grid().step().recip()
+    }
+
+    /// The fewest values in any bin of so many steps.
+    fn fewest(&self, bin: usize, asked: Thinning) -> usize {
+        let bins = self.bins(bin, how(self.quantity(), asked)).into_iter();
+        bins.map(|[from, to]| to - from).min().unwrap_or(bin)
     }
 
     /// The series in bins of so many steps; itself in bins of one.
