@@ -112,6 +112,7 @@ impl CalibrationReport {
     }
 
     /// The backend, and why it is the one where nobody asked for it.
+    #[cfg(feature = "pages")]
     pub(crate) fn backend_told(&self) -> String {
         match &self.backend_why {
             Some(why) => format!("{} (picked since {why})", self.backend),
