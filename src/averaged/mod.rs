@@ -56,6 +56,7 @@ impl Open {
 ///
 /// ```no_run
 /// use couloir::averaged::{Open, calibrate_open};
+/// use couloir::infer::{LaplaceMixture, Quiet};
 /// use couloir::prelude::*;
 /// # fn of(model: &couloir::model::Assembled) -> Result<()> {
 /// let open = Open::default().with_noise();
