@@ -9,7 +9,6 @@ use crate::draws::{log_sum_exp, summarise};
 use crate::error::{Error, Result};
 use crate::infer::{Backend, Progress};
 use crate::model::Assembled;
-use crate::noise::Form;
 use crate::report::{
     CalibrationReport, EvidenceReport, NoiseReport, ParameterReport,
 };
@@ -108,11 +107,8 @@ fn judged(
     let named = named.or(dropped.map(|noisy| noisy.none.log_evidence));
     let judged = |one: &Kept<'_>| {
         let (name, log) = (&one.noisy.name, one.log());
-        let form = Form::of(name);
         NoiseReport {
             name: name.clone(),
-            has_tails: form.has_tails,
-            grows: form.grows,
             probability: (log - total).exp(),
             log10_bayes_factor: (log - named.unwrap_or(f64::NAN)) / LN_10,
             parameters: Vec::new(),

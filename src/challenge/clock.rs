@@ -15,8 +15,8 @@ pub(super) struct Rates {
 }
 
 impl Rates {
-    /// 10 to 4 values a second; or 10, as radars give them, and enough for
-    /// what errors remember to show.
+    /// 10 to 4 values a second; or 10, as real sensors give them, and enough
+    /// for what errors remember to show.
     pub(super) fn of(errors: Errors) -> Self {
         match errors {
             Errors::Simple => {

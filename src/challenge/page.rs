@@ -130,7 +130,9 @@ pub fn page(scored: &Scored, mix: Mix, errors: Errors, seed: u64) -> String {
     };
     let scattered = match errors {
         Errors::Simple => "simple errors",
-        Errors::Real => "errors as radars make them, called ar(1) in all",
+        Errors::Real => {
+            "errors as real sensors make them, called ar(1) in all"
+        }
     };
     let body = html! {
         h1 { "What was hidden, and what was found" }

@@ -8,7 +8,7 @@ pub enum Errors {
     /// is one on the errors.
     #[default]
     Simple,
-    /// As recordings of radar have them: smooth, drifting, correlated, with
+    /// As real sensors have them: smooth, drifting, correlated, with
     /// outliers or growing, and the event's file says `ar(1)` of all.
     Real,
 }

@@ -1,6 +1,7 @@
 //! `couloir calibrate`: a friction law with its uncertainty.
 
 use clap::Args;
+use serde_json::json;
 
 use super::answer::{Answer, Strict};
 use super::progress::Told;
@@ -14,7 +15,7 @@ use crate::infer::{Suited, backend, suited};
 use crate::io::write_all;
 use crate::physics::friction::Laws;
 use crate::report::{
-    calibration_json, in_words, noises, page, picture, table,
+    PROGRAM, calibration_json, in_words, noises, page, picture, table,
 };
 
 #[derive(Debug, Args)]
@@ -45,11 +46,13 @@ impl Arguments {
     pub(super) fn run(&self, laws: &Laws) -> Result<Answer> {
         let subject =
             Subject { thin: self.thin.clone(), ..self.subject.clone() };
-        let found = self.found(subject.read(laws)?)?;
+        let read = subject.read(laws)?;
+        // Summed before the work, as they were read.
+        let inputs = read.inputs.clone();
+        let found = self.found(read)?;
         let mut json = calibration_json(&found.report);
-        json["inputs"] = subject.inputs("")?.into();
-        json["program"] =
-            concat!("couloir ", env!("CARGO_PKG_VERSION")).into();
+        json["inputs"] = json!(inputs);
+        json["program"] = PROGRAM.into();
         let json = pretty(&json);
         if let Some(folder) = &self.output.out {
             let files = [
@@ -64,7 +67,7 @@ impl Arguments {
     }
 
     fn found(&self, read: Read) -> Result<Calibration> {
-        let Read { model, infers_noise, thinned } = read;
+        let Read { model, infers_noise, thinned, .. } = read;
         let effort = self.work.effort()?;
         let (backend, why) = match &self.backend {
             Some(name) => (backend(name, &effort)?, None),

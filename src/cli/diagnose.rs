@@ -1,6 +1,7 @@
 //! `couloir diagnose`: where simulation and recording differ, and what was
 //! left out.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -74,6 +75,15 @@ fn odds(text: &str) -> Result<(String, f64), String> {
 /// The folder of the events with what was found, within that of the results.
 const CORRECTED: &str = "corrected";
 
+/// A diagnosis with what it is of.
+struct Found {
+    found: Diagnosis,
+    /// What each of several events is called by.
+    labels: Vec<String>,
+    /// The checksums of what was read.
+    inputs: Map<String, Value>,
+}
+
 /// Files by their names in the folder of the results.
 type Files = Vec<(PathBuf, String)>;
 
@@ -81,9 +91,11 @@ impl Arguments {
     pub(super) fn run(&self, laws: &Laws) -> Result<Answer> {
         let subjects = self.subjects(&self.thin);
         let told = Told::new();
-        let (found, labels) = self.found(&subjects, laws, &told)?;
+        let Found { found, labels, inputs } =
+            self.found(&subjects, laws, &told)?;
         drop(told);
-        let json = document(&found, &subjects, &labels)?;
+        let mut json = found.json();
+        json["inputs"] = Value::Object(inputs);
         let mut names =
             vec!["report.html", "diagnosis.json", "draws.csv", "pictures/"];
         let mut old = None;
@@ -119,20 +131,22 @@ impl Arguments {
         subjects: &[Subject],
         laws: &Laws,
         told: &Told,
-    ) -> Result<(Diagnosis, Vec<String>)> {
+    ) -> Result<Found> {
         let read = read_all(subjects, laws)?;
         // Looked at before the work and not after.
         let halved = self.subjects(&self.thin.halved());
         let halved =
             self.check_rate.then(|| read_all(&halved, laws)).transpose()?;
         let said = read.iter().flat_map(|one| one.thinned.clone()).collect();
+        let sums: Vec<_> = read.iter().map(|one| one.inputs.clone()).collect();
         let (mut found, labels) = self.diagnose(read, told)?;
         found.notes = said;
         if let Some(read) = halved {
             let (again, _) = self.diagnose(read, told)?;
             found.check_rate(&again);
         }
-        Ok((found, labels))
+        let inputs = inputs(sums, &labels);
+        Ok(Found { found, labels, inputs })
     }
 
     /// Each event with what the command line changes of it.
@@ -187,21 +201,19 @@ fn read_all(subjects: &[Subject], laws: &Laws) -> Result<Vec<Read>> {
     subjects.iter().map(|event| event.read(laws)).collect()
 }
 
-/// The diagnosis as JSON, with the checksums of what was read: by the events'
-/// labels, where there are several.
-fn document(
-    found: &Diagnosis,
-    subjects: &[Subject],
+/// The checksums of what was read, after the events' labels where there are
+/// several.
+fn inputs(
+    sums: Vec<BTreeMap<String, String>>,
     labels: &[String],
-) -> Result<Value> {
-    let mut inputs = Map::new();
-    for (i, event) in subjects.iter().enumerate() {
+) -> Map<String, Value> {
+    let labelled = |(i, sums): (usize, BTreeMap<String, String>)| {
         let label = labels.get(i).map_or(String::new(), |l| format!("{l}/"));
-        inputs.extend(event.inputs(&label)?);
-    }
-    let mut json = found.json();
-    json["inputs"] = Value::Object(inputs);
-    Ok(json)
+        let named = move |(name, sum)| (format!("{label}{name}"), sum);
+        sums.into_iter().map(named)
+    };
+    let all = sums.into_iter().enumerate().flat_map(labelled);
+    all.map(|(name, sum)| (name, sum.into())).collect()
 }
 
 fn reports(found: &Diagnosis, json: &Value) -> Files {

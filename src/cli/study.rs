@@ -1,6 +1,6 @@
 //! From the command line to a model: the event, with what was changed of it.
 
-use serde_json::{Map, Value};
+use std::collections::BTreeMap;
 
 use super::Subject;
 use crate::error::{Error, Result};
@@ -18,21 +18,14 @@ pub(super) struct Read {
     pub(super) infers_noise: bool,
     /// How its recordings were thinned.
     pub(super) thinned: Vec<String>,
+    /// The checksums of the files that were read, by their names.
+    pub(super) inputs: BTreeMap<String, String>,
 }
 
 impl Subject {
     /// The event, the embedded one where none was named.
     pub(super) fn load(&self, laws: &Laws) -> Result<EventFile> {
         self.load_told(laws).map(|(file, _)| file)
-    }
-
-    /// The checksums of the files that are read, by their names after a label.
-    pub(super) fn inputs(&self, label: &str) -> Result<Map<String, Value>> {
-        let files = io::inputs(self.event.as_deref())?.into_iter();
-        let named = |(name, sum): (String, String)| {
-            (format!("{label}{name}"), sum.into())
-        };
-        Ok(files.map(named).collect())
     }
 
     /// The same, and how its recordings were thinned.
@@ -81,7 +74,8 @@ impl Subject {
         if own {
             model.check_priors(&priors).map_err(|e| e.within(place))?;
         }
-        Ok(Read { model, infers_noise, thinned })
+        let inputs = io::inputs(self.event.as_deref())?;
+        Ok(Read { model, infers_noise, thinned, inputs })
     }
 
     /// The noise that the command line names; what stands in where it is to be

@@ -74,6 +74,14 @@ pub fn corrected(
 /// What the recording is called in the new folder.
 const RECORDING: &str = "recording.csv";
 
+/// The sections and keys of an event.toml that may name a file, and what the
+/// file is called in the new folder.
+pub(super) const FILES: [(&str, &str, &str); 3] = [
+    ("track", "file", "track.csv"),
+    ("recording", "file", RECORDING),
+    ("flow", "depth", "depth.csv"),
+];
+
 /// A recording as its file has it, to the last digit.
 fn csv(series: &Series) -> String {
     let errors = series.grid().standard_errors();
@@ -93,12 +101,17 @@ fn edited(
     path: &Path,
     change: impl FnOnce(&mut DocumentMut),
 ) -> Result<String> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut document: DocumentMut = text.parse().map_err(|_| {
-        Error::input(format!("{}: is not TOML any more", place(path)))
-    })?;
+    let mut document = editable(text, path)?;
     change(&mut document);
     Ok(document.to_string())
+}
+
+/// An event.toml that was read before, with its comments.
+pub(super) fn editable(text: &str, path: &Path) -> Result<DocumentMut> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    text.parse().map_err(|_| {
+        Error::input(format!("{}: is not TOML any more", place(path)))
+    })
 }
 
 fn correct(document: &mut DocumentMut, correction: &Correction) {
@@ -127,12 +140,7 @@ fn correct(document: &mut DocumentMut, correction: &Correction) {
 /// Names the data files anew, as they are called in the new folder; returns
 /// both names of each.
 fn moved(document: &mut DocumentMut) -> Vec<(&'static str, String)> {
-    let files = [
-        ("track", "file", "track.csv"),
-        ("recording", "file", RECORDING),
-        ("flow", "depth", "depth.csv"),
-    ];
-    files
+    FILES
         .into_iter()
         .filter_map(|(section, key, name)| {
             let section = document.get_mut(section)?.as_table_like_mut()?;

@@ -4,16 +4,13 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use sha2::{Digest, Sha256};
-use toml_edit::{DocumentMut, Item};
+use toml_edit::Item;
 
+use super::corrected::{FILES, editable};
 use super::embedded;
 use super::event_file::{MOST_BYTES, find};
 use super::source::read_text;
-use crate::error::{Error, Result};
-
-/// The sections and keys of an event.toml that may name a file.
-const FILES: [(&str, &str); 3] =
-    [("track", "file"), ("recording", "file"), ("flow", "depth")];
+use crate::error::Result;
 
 /// The files of an event by their names, each with its SHA-256: event.toml
 /// and those that it names. The event is the built-in one where no path is
@@ -35,7 +32,7 @@ pub(crate) fn inputs(
     let called = file.file_name().unwrap_or_default().to_string_lossy();
     let mut all = BTreeMap::from([(called.into_owned(), sha256(&text))]);
     let folder = file.parent().unwrap_or(Path::new(""));
-    for name in named(&text)? {
+    for name in named(&text, &file)? {
         let data = read_text(&folder.join(&name), u64::MAX - 1)?;
         all.insert(name, sha256(&data));
     }
@@ -43,11 +40,9 @@ pub(crate) fn inputs(
 }
 
 /// The files that an event.toml names.
-fn named(text: &str) -> Result<Vec<String>> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let document: DocumentMut =
-        text.parse().map_err(|_| Error::input("is not TOML any more"))?;
-    let of = |(section, key): (&str, &str)| {
+fn named(text: &str, file: &Path) -> Result<Vec<String>> {
+    let document = editable(text, file)?;
+    let of = |(section, key, _): (&str, &str, &str)| {
         let section = document.get(section).and_then(Item::as_table_like)?;
         section.get(key)?.as_str().map(str::to_owned)
     };
@@ -76,7 +71,8 @@ mod tests {
     fn all_files_of_an_event_are_counted() {
         let text = "[track]\nfile = \"t.csv\"\n[recording]\nfile = \"r.csv\"\n\
                     [flow]\ndepth = 1.0\n";
-        assert_eq!(named(text).unwrap(), ["t.csv", "r.csv"]);
+        let names = named(text, Path::new("event.toml")).unwrap();
+        assert_eq!(names, ["t.csv", "r.csv"]);
         assert_eq!(inputs(None).unwrap().len(), 2);
     }
 }

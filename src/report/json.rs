@@ -6,6 +6,7 @@ use super::{
     CalibrationReport, Checks, EvidenceReport, LawReport, NoiseReport,
     ParameterReport,
 };
+use crate::noise::Form;
 
 /// `calibration.json`, schema 1; numbers that are not finite are null.
 ///
@@ -55,15 +56,26 @@ pub fn calibration_json(report: &CalibrationReport) -> Value {
     document
 }
 
-/// As in `diagnosis.json`.
 fn noise(n: &NoiseReport) -> Value {
+    let known = [n.probability, n.log10_bayes_factor];
+    noise_json(&n.name, known, &figures(&n.parameters))
+}
+
+/// A noise with its probability and log10 Bayes factor, in `calibration.json`
+/// as in `diagnosis.json`.
+pub(crate) fn noise_json(
+    name: &str,
+    [probability, log10_bayes_factor]: [f64; 2],
+    parameters: &Value,
+) -> Value {
+    let form = Form::of(name);
     json!({
-        "name": n.name,
-        "tails": if n.has_tails { "student" } else { "normal" },
-        "size": if n.grows { "growing" } else { "equal" },
-        "probability": n.probability,
-        "log10_bayes_factor": n.log10_bayes_factor,
-        "parameters": figures(&n.parameters),
+        "name": name,
+        "tails": if form.has_tails { "student" } else { "normal" },
+        "size": if form.grows { "growing" } else { "equal" },
+        "probability": probability,
+        "log10_bayes_factor": log10_bayes_factor,
+        "parameters": parameters,
     })
 }
 

@@ -21,15 +21,21 @@ mod words;
 
 pub use crate::predict::Bands;
 pub use json::calibration_json;
+pub(crate) use json::noise_json;
 pub use law::LawReport;
 pub use noises::{NoiseReport, noises};
+pub(crate) use noises::{NoiseRow, noise_lines};
 #[cfg(feature = "pages")]
 pub use page::page;
 #[cfg(feature = "pages")]
-pub(crate) use page::{figure, standalone};
+pub(crate) use page::{figure, noise_table, standalone};
 pub use svg::{Picture, pictures};
 pub use terminal::{picture, table};
 pub use words::in_words;
+
+/// The program and its version, as results name it.
+pub(crate) const PROGRAM: &str =
+    concat!("couloir ", env!("CARGO_PKG_VERSION"));
 
 /// All that is told about one calibration.
 #[derive(Debug, Clone, Default)]

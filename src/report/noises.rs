@@ -9,10 +9,6 @@ use super::{CalibrationReport, ParameterReport};
 pub struct NoiseReport {
     /// Its name, as in `event.toml`.
     pub name: String,
-    /// Whether large errors are more common than a normal law has them.
-    pub has_tails: bool,
-    /// Whether its size changes along the recording.
-    pub grows: bool,
     /// Its probability among those that were kept.
     pub probability: f64,
     /// Against the noise that stands where none is named.
@@ -23,16 +19,20 @@ pub struct NoiseReport {
 
 impl NoiseReport {
     /// Its probability in two digits.
-    pub(super) fn probability_told(&self) -> String {
+    fn probability_told(&self) -> String {
         match self.probability {
             p if p < 0.001 => "< 0.001".to_owned(),
             p => format!("{p:.3}"),
         }
     }
 
-    /// Its Bayes factor to a tenth of a power of ten.
-    pub(super) fn factor_told(&self) -> String {
-        format!("{:+.1}", self.log10_bayes_factor)
+    /// As tables have it, its Bayes factor to a tenth of a power of ten.
+    pub(super) fn row(&self) -> NoiseRow {
+        NoiseRow {
+            name: self.name.clone(),
+            probability: self.probability_told(),
+            factor: format!("{:+.1}", self.log10_bayes_factor),
+        }
     }
 }
 
@@ -64,20 +64,32 @@ pub fn noises(report: &CalibrationReport, width: usize) -> String {
     if report.noises.is_empty() {
         return String::new();
     }
+    let rows: Vec<NoiseRow> =
+        report.noises.iter().map(NoiseReport::row).collect();
+    let mut text = noise_lines(&rows, width).join("\n");
+    text.push('\n');
+    text
+}
+
+/// A noise as tables have it, the figures as text.
+pub(crate) struct NoiseRow {
+    pub(crate) name: String,
+    pub(crate) probability: String,
+    pub(crate) factor: String,
+}
+
+/// The lines of a table of noises, at most `width` characters each.
+pub(crate) fn noise_lines(rows: &[NoiseRow], width: usize) -> Vec<String> {
     let name = width.saturating_sub(20).clamp(8, 40);
     let line = |noise: &str, p: &str, factor: &str| {
-        let noise = shorten(noise, name);
-        format!("{noise:<name$}  {p:>7}  {factor:>8}\n")
+        format!("{:<name$}  {p:>7}  {factor:>8}", shorten(noise, name))
     };
-    let mut text = line("noise", "prob.", "log10 BF");
-    text.push_str(&"─".repeat(name + 19));
-    text.push('\n');
-    for noise in &report.noises {
-        let p = noise.probability_told();
-        let factor = noise.factor_told();
-        text.push_str(&line(&plain(&noise.name), &p, &factor));
-    }
-    text
+    let head = line("noise", "prob.", "log10 BF");
+    let mut lines = vec![head, "─".repeat(name + 19)];
+    lines.extend(
+        rows.iter().map(|r| line(&plain(&r.name), &r.probability, &r.factor)),
+    );
+    lines
 }
 
 #[cfg(test)]

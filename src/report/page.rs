@@ -8,7 +8,9 @@ use super::digits::{
 use super::svg::{Picture, pictures};
 use super::text::{plain, unit};
 use super::words::sentences;
-use super::{CalibrationReport, NoiseReport, ParameterReport};
+use super::{
+    CalibrationReport, NoiseReport, NoiseRow, PROGRAM, ParameterReport,
+};
 
 const STYLE: &str = include_str!("page.css");
 
@@ -118,33 +120,39 @@ fn table(parameters: &[ParameterReport]) -> Markup {
 
 /// The noises that the calibration was averaged over.
 fn noises(report: &CalibrationReport) -> Markup {
-    if report.noises.is_empty() {
+    let row = |n: &NoiseReport| (n.row(), sizes(&n.parameters));
+    let rows: Vec<_> = report.noises.iter().map(row).collect();
+    noise_table(
+        &rows,
+        "The parameters of the motion are averaged over these; those of the \
+         errors, the mode, the draws in the pictures, the checks and the \
+         predictions are of the first. The Bayes factor is against errors \
+         that are correlated in time.",
+    )
+}
+
+/// A table of noises, each with its parameters, and what it is; nothing where
+/// there are none.
+pub(crate) fn noise_table(rows: &[(NoiseRow, String)], note: &str) -> Markup {
+    const HEADINGS: [&str; 4] =
+        ["noise", "probability", "log10 Bayes factor", "parameters"];
+    if rows.is_empty() {
         return html! {};
     }
-    let factor = |n: &NoiseReport| n.factor_told().replace('-', "−");
     html! {
         h2 { "What made the errors" }
         div.wide { table {
             thead { tr {
-                @for heading in
-                    ["noise", "probability", "log10 Bayes factor", "parameters"]
-                {
-                    th scope="col" { (heading) }
-                }
+                @for heading in HEADINGS { th scope="col" { (heading) } }
             } }
-            tbody { @for n in &report.noises { tr {
-                td.name { (plain(&n.name)) }
-                td { (n.probability_told()) }
-                td { (factor(n)) }
-                td { (sizes(&n.parameters)) }
+            tbody { @for (noise, sizes) in rows { tr {
+                td.name { (plain(&noise.name)) }
+                td { (noise.probability) }
+                td { (noise.factor.replace('-', "−")) }
+                td { (sizes.replace('-', "−")) }
             } } }
         } }
-        p.note {
-            "The parameters of the motion are averaged over these; those of \
-             the errors, the mode, the draws in the pictures, the checks and \
-             the predictions are of the first. The Bayes factor is against \
-             errors that are correlated in time."
-        }
+        p.note { (note) }
     }
 }
 
@@ -160,7 +168,7 @@ fn sizes(parameters: &[ParameterReport]) -> String {
         format!("{} {middle}{unit} ({low} to {high})", plain(&p.name))
     };
     let all: Vec<String> = parameters.iter().map(one).collect();
-    all.join(", ").replace('-', "−")
+    all.join(", ")
 }
 
 /// The law's parameters, without and with a force of free form.
@@ -175,7 +183,7 @@ fn law(report: &CalibrationReport) -> Markup {
         div.wide { table {
             tbody { @for (which, parameters) in rows { tr {
                 td.name { (which) }
-                td { (sizes(parameters)) }
+                td { (sizes(parameters).replace('-', "−")) }
             } } }
         } }
     }
@@ -244,7 +252,7 @@ fn facts(report: &CalibrationReport) -> Vec<(&'static str, String)> {
     let c = &report.checks;
     let seconds = significant(report.seconds, 3);
     let mut out = vec![
-        ("program", format!("couloir {}", env!("CARGO_PKG_VERSION"))),
+        ("program", PROGRAM.to_owned()),
         ("friction", report.friction.clone()),
         ("errors", report.noise.clone()),
         ("recording", recording(report)),

@@ -171,7 +171,7 @@ impl<'a, P: Program> Stepwise<'a, P> {
         let seed = self.seed.child(1000 + number);
         let terms = match &which[..] {
             &[a, b] => self.pair([a, b], seed)?,
-            _ => self.extended(chosen, step, seed)?,
+            _ => self.extended(chosen, step, &which, seed)?,
         };
         Ok(Look { price: self.price(&which), which, terms })
     }
@@ -187,9 +187,9 @@ impl<'a, P: Program> Stepwise<'a, P> {
         &self,
         chosen: &Chosen,
         step: &Step,
+        which: &[usize],
         seed: Seed,
     ) -> Result<Combination<'a>> {
-        let which = step.terms(&chosen.which);
         let columns = chosen.columns(self.all);
         let kept: Vec<_> =
             step.kept.iter().map(|&k| columns[k].clone()).collect();

@@ -288,10 +288,12 @@ fn kept<P: Program>(
     mut all: Vec<Weighed<'_, P>>,
     seed: Seed,
 ) -> Result<Noises<'_, P>> {
-    let pay: Vec<bool> =
-        all.iter().map(|o| o.program.is_named() || pays(o, &all)).collect();
-    let mut pay = pay.into_iter();
-    all.retain(|_| pay.next().unwrap_or(true));
+    let idle: Vec<String> = all
+        .iter()
+        .filter(|one| !one.program.is_named() && !pays(one, &all))
+        .map(|one| one.name.clone())
+        .collect();
+    all.retain(|one| !idle.contains(&one.name));
     let near: Vec<String> = all
         .iter()
         .filter(|one| short(one, &all) < NEAR * LN_10)

@@ -10,6 +10,7 @@ use crate::diagnosis::{
     LawParameters, Mismatch, ParameterSummary, Rest, Rival,
 };
 use crate::physics::forces::Axis;
+use crate::report::{PROGRAM, noise_json};
 
 fn axis_name(axis: Axis) -> &'static str {
     match axis {
@@ -87,15 +88,9 @@ fn judged_json(m: &Judged) -> Value {
     value
 }
 
-fn noise_json(noise: &JudgedNoise) -> Value {
-    json!({
-        "name": noise.name,
-        "tails": if noise.has_tails { "student" } else { "normal" },
-        "size": if noise.grows { "growing" } else { "equal" },
-        "probability": noise.probability,
-        "log10_bayes_factor": noise.log10_bayes_factor,
-        "parameters": parameters_json(&noise.parameters),
-    })
+fn judged_noise_json(noise: &JudgedNoise) -> Value {
+    let known = [noise.probability, noise.log10_bayes_factor];
+    noise_json(&noise.name, known, &parameters_json(&noise.parameters))
 }
 
 fn rival_json(rival: &Rival) -> Value {
@@ -170,14 +165,14 @@ impl Diagnosis {
     pub fn json(&self) -> Value {
         json!({
             "schema": 2,
-            "program": concat!("couloir ", env!("CARGO_PKG_VERSION")),
+            "program": PROGRAM,
             "event": self.event,
             "baseline": baseline_json(&self.baseline),
             "verdict": self.verdict.name(),
             "weak": self.weak,
             "mismatch": list(&self.mismatch, mismatch_json),
             "mechanisms": list(&self.mechanisms, judged_json),
-            "noise": list(&self.noise, noise_json),
+            "noise": list(&self.noise, judged_noise_json),
             "selected": self.selected,
             "selected_noise": self.selected_noise,
             "group": self.group,

@@ -3,7 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 
 use crate::diagnosis::tell::phrases::{
-    friction, interval, is_corrected, log10, probability, with_unit,
+    friction, interval, is_corrected, noise_row, with_unit,
 };
 use crate::diagnosis::tell::pictures::{Figure, bars, forces, of_event};
 use crate::diagnosis::tell::words::{before_and_after, in_words};
@@ -11,9 +11,10 @@ use crate::diagnosis::{
     Diagnosis, Hypothesis, JudgedNoise, LawParameters, ParameterSummary,
     Pictured, Verdict,
 };
+use crate::report::PROGRAM;
 use crate::report::digits::{beside, significant};
-use crate::report::standalone;
 use crate::report::text::{is_synthetic, plain, unit};
+use crate::report::{noise_table, standalone};
 
 /// `report.html` of a diagnosis: in words first, then what was located, both
 /// models on the recordings, the evidence, and the corrected model.
@@ -159,33 +160,13 @@ fn sentences(d: &Diagnosis) -> Markup {
 
 /// The noises that may have made the errors.
 fn noises(d: &Diagnosis) -> Markup {
-    if d.noise.is_empty() {
-        return html! {};
-    }
-    html! {
-        h2 { "What made the errors" }
-        div.wide { table {
-            thead { tr {
-                @for heading in
-                    ["noise", "probability", "log10 Bayes factor", "parameters"]
-                {
-                    th scope="col" { (heading) }
-                }
-            } }
-            tbody { @for n in &d.noise {
-                tr {
-                    td.name { (plain(&n.name)) }
-                    td { (probability(n.probability)) }
-                    td { (log10(n.log10_bayes_factor).replace('-', "−")) }
-                    td { (sizes(n).replace('-', "−")) }
-                }
-            } }
-        } }
-        p.note {
-            "Each averaged over what may be missing; the Bayes factor is \
-             against the noise that the event names."
-        }
-    }
+    let rows: Vec<_> =
+        d.noise.iter().map(|n| (noise_row(n), sizes(n))).collect();
+    noise_table(
+        &rows,
+        "Each averaged over what may be missing; the Bayes factor is against \
+         the noise that the event names.",
+    )
 }
 
 /// A noise's parameters with their 90 % intervals.
@@ -364,7 +345,7 @@ fn computed(d: &Diagnosis) -> Markup {
         h2 { "How it was computed" }
         dl {
             dt { "program" }
-            dd { "couloir " (env!("CARGO_PKG_VERSION")) }
+            dd { (PROGRAM) }
             dt { "log evidence before" }
             dd { (significant(d.baseline.log_evidence, 5).replace('-', "−")) }
             @if values > 0 {

@@ -1,9 +1,11 @@
 //! Mechanisms, places and figures in words.
 
 use crate::diagnosis::{
-    Baseline, Diagnosis, Judged, Mismatch, ParameterSummary, Verdict,
+    Baseline, Diagnosis, Judged, JudgedNoise, Mismatch, ParameterSummary,
+    Verdict,
 };
 use crate::physics::forces::Axis;
+use crate::report::NoiseRow;
 use crate::report::digits::{beside, short, significant};
 use crate::report::text::{is_synthetic, plain, unit};
 
@@ -111,6 +113,15 @@ pub(crate) fn log10(x: f64) -> String {
         x if !x.is_finite() => significant(x, 2),
         x if x.abs() < 0.05 => "0.0".to_owned(),
         x => format!("{x:+.1}"),
+    }
+}
+
+/// A noise as tables have it.
+pub(crate) fn noise_row(n: &JudgedNoise) -> NoiseRow {
+    NoiseRow {
+        name: n.name.clone(),
+        probability: probability(n.probability),
+        factor: log10(n.log10_bayes_factor),
     }
 }
 

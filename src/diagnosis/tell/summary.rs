@@ -1,12 +1,13 @@
 //! A diagnosis in a terminal: words, tables and the corrected equation.
 
 use crate::diagnosis::tell::phrases::{
-    interval, is_corrected, log10, own_name, probability, with_unit,
+    interval, is_corrected, log10, noise_row, own_name, probability, with_unit,
 };
 use crate::diagnosis::tell::words::{Row, before_and_after, in_words};
 use crate::diagnosis::{Diagnosis, Judged};
 use crate::report::digits::beside;
 use crate::report::text::{plain, shorten, wrap};
+use crate::report::{NoiseRow, noise_lines};
 
 /// The narrowest and the widest summary.
 const WIDTHS: (usize, usize) = (44, 80);
@@ -74,16 +75,9 @@ fn noises(d: &Diagnosis, width: usize) -> Vec<String> {
     if d.noise.len() < 2 {
         return Vec::new();
     }
-    let name = width.saturating_sub(20).min(40);
-    let line = |noise: &str, p: &str, bf: &str| {
-        format!("{:<name$}  {p:>7}  {bf:>8}", shorten(noise, name))
-    };
-    let head = line("noise", "prob.", "log10 BF");
-    let mut lines = vec![String::new(), head, "─".repeat(name + 19)];
-    lines.extend(d.noise.iter().map(|n| {
-        let bf = log10(n.log10_bayes_factor);
-        line(&plain(&n.name), &probability(n.probability), &bf)
-    }));
+    let rows: Vec<NoiseRow> = d.noise.iter().map(noise_row).collect();
+    let mut lines = vec![String::new()];
+    lines.extend(noise_lines(&rows, width));
     lines
 }
 
