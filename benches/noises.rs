@@ -1,4 +1,4 @@
-//! How long does a log density of 400 values take, by noise?
+//! How long do a log density of 400 values and its information take, by noise?
 
 #![allow(missing_docs)]
 
@@ -30,7 +30,14 @@ fn model(noise: &str) -> Result<Assembled> {
 }
 
 fn densities(criterion: &mut Criterion) {
-    let noises = ["iid", "ar(1)", "ou + white", "matern32 + white"];
+    let noises = [
+        "iid",
+        "ar(1)",
+        "ou + white",
+        "matern32 + white",
+        "matern32 + ou",
+        "matern32 + ou + tails",
+    ];
     for noise in noises {
         let Ok(model) = model(noise) else { continue };
         let model: &dyn Model = &model;
@@ -46,6 +53,9 @@ fn densities(criterion: &mut Criterion) {
         let Ok(z) = posterior.line(&natural) else { continue };
         criterion.bench_function(noise, |b| {
             b.iter(|| model.evaluate(Point::Line(&z), None));
+        });
+        criterion.bench_function(&format!("{noise}, information"), |b| {
+            b.iter(|| model.information(&z));
         });
     }
 }

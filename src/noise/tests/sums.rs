@@ -144,6 +144,38 @@ fn steady_filters_are_dense_densities() {
     }
 }
 
+/// Of 400 even times: the filter of two vectors against that of the state's
+/// covariance, which is taken where values have standard errors, be they 0.
+/// Memories of 1 to 300 steps; both carry the round-off of the variance of an
+/// error over that of what is new in it, which is 1e6 at the most.
+#[test]
+fn even_times_are_filtered_as_any() {
+    let times: Vec<f64> = (0..400).map(|i| 0.1 * f64::from(i)).collect();
+    let even = Grid::new(times.clone(), None);
+    let any = Grid::new(times, Some(vec![0.0; 400]));
+    let mut rng = Seed::new(15).rng();
+    for _ in 0..40 {
+        let mut size =
+            |from: f64, to: f64| Number::new(rng.random_range(from..to).exp());
+        let sd_matern = size(-3.0, 1.0);
+        let smooth = Matern32 { sd_matern, time_matern: size(-2.3, 1.0) };
+        let drift = Ou { sd_ou: size(-3.0, 1.0), time_ou: size(-2.3, 3.4) };
+        let white = White { sigma2: size(-8.0, 0.0) };
+        let sums: [&dyn Part<Plain>; 3] = [
+            &Sum::new(smooth, drift),
+            &Sum::new(smooth, white),
+            &Sum::new(drift, white),
+        ];
+        for sum in sums {
+            let noise = Whole::of(sum);
+            let r = lifted(&noise.draw(&any, &mut rng).unwrap());
+            let expected = noise.log_likelihood(&any, &r).unwrap();
+            let found = noise.log_likelihood(&even, &r).unwrap();
+            close(found.value(), expected.value(), 1e-9);
+        }
+    }
+}
+
 #[test]
 fn steady_filters_have_their_derivatives() {
     let r: Vec<f64> = (0..150).map(|i| (f64::from(i) * 1.3).sin()).collect();
