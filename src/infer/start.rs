@@ -9,7 +9,7 @@ use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
 use crate::error::{Error, Result};
-use crate::model::{Density, Point, Posterior};
+use crate::model::{Point, Posterior};
 use crate::seed::{Rng, Seed};
 
 /// How many draws from the prior compete for a chain's start.
@@ -51,19 +51,6 @@ pub(super) fn best_start(
     Ok(start)
 }
 
-/// A draw from the prior with its place on the line; `None` where the model
-/// rejects it before all its parameters are known, as one of several events
-/// may.
-pub(super) fn drawn(
-    posterior: &Posterior<'_>,
-    rng: &mut Rng,
-) -> Result<Option<(Density, Vec<f64>)>> {
-    let (density, found) = posterior.draw_prior(rng)?;
-    let complete = found.line.len() == posterior.dimension();
-    let whole = complete && found.line.iter().all(|z| z.is_finite());
-    Ok(whole.then_some((density, found.line)))
-}
-
 /// Of how many whole draws from the prior the likeliest is a start, and how
 /// many are made for these at the most.
 const DRAWN: usize = 8;
@@ -79,10 +66,10 @@ pub(super) fn likely(
     let mut best: Option<(f64, Vec<f64>)> = None;
     let mut whole = 0;
     for _ in 0..TRIES {
-        let Some((density, line)) = drawn(posterior, &mut rng)? else {
+        let Some(line) = posterior.draw_place(&mut rng)? else {
             continue;
         };
-        let log = density.log_likelihood;
+        let log = posterior.density(Point::Line(&line))?.log_likelihood;
         if best.as_ref().is_none_or(|(most, _)| log > *most) {
             best = Some((log, line));
         }

@@ -47,11 +47,22 @@ impl Columns {
     }
 }
 
-impl<K: Forward> Listener<K> for Columns {
+/// One run's part of them, the derivatives that its numbers carry.
+struct Part<'c, K: Kind> {
+    columns: &'c mut Columns,
+    /// Of the series just heard.
+    log_likelihood: Option<Real<K>>,
+}
+
+impl<K: Forward> Listener<K> for Part<'_, K> {
     fn parameter(&mut self, declaration: &Declaration<'_, K>) {
-        if self.first == 0 {
-            self.bends.push(bend(declaration));
+        if self.columns.first == 0 {
+            self.columns.bends.push(bend(declaration));
         }
+    }
+
+    fn log_likelihood(&mut self) -> Option<Real<K>> {
+        self.log_likelihood.take()
     }
 
     fn series(
@@ -60,16 +71,21 @@ impl<K: Forward> Listener<K> for Columns {
         residuals: &[Real<K>],
         noise: &dyn Noise<K>,
     ) -> Outcome {
+        let mut total = Real::new(0.0);
+        let columns = &mut *self.columns;
         noise.walk(series.grid(), residuals, &mut |value| {
             let Informing { place, size, shape } = value.informing;
-            self.push(place);
-            self.push(size);
-            shape.into_iter().for_each(|shape| self.push(shape));
-        })
+            columns.push(place);
+            columns.push(size);
+            shape.into_iter().for_each(|shape| columns.push(shape));
+            total += value.log_density;
+        })?;
+        self.log_likelihood = Some(total);
+        Ok(())
     }
 
     fn element(&mut self, _: f64, log_density: Real<K>, _: &dyn Prior<K>) {
-        self.push(log_density);
+        self.columns.push(log_density);
     }
 }
 
@@ -123,8 +139,9 @@ fn fill<K: Number + Forward, P: Program>(
     for first in (0..z.len()).step_by(K::DIRECTIONS) {
         (columns.first, columns.next) = (first, 0);
         let source = Source::Line { z, first };
+        let mut part = Part { columns: &mut *columns, log_likelihood: None };
         let (density, prior, jacobian, likelihood) =
-            run::<K, P>(program, source, Some(z.len()), Some(columns))?;
+            run::<K, P>(program, source, Some(z.len()), Some(&mut part))?;
         let total = prior + jacobian + likelihood;
         for i in 0..K::DIRECTIONS.min(z.len() - first) {
             gradient[first + i] = total.partial(i);

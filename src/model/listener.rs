@@ -52,6 +52,12 @@ pub trait Listener<K: Kind> {
         Ok(())
     }
 
+    /// The log likelihood of the series just heard, where that was found on
+    /// the way: it is then not computed again.
+    fn log_likelihood(&mut self) -> Option<Real<K>> {
+        None
+    }
+
     /// Whether data are scored: what replaces them asks for no density of
     /// what stands there.
     fn scores(&self) -> bool {

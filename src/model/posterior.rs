@@ -238,6 +238,22 @@ impl<'m> Posterior<'m> {
         self.collect(Point::Prior(rng))
     }
 
+    /// The place of a draw from the prior on the real line; `None` where the
+    /// model rejects it before all its parameters are known, as one of several
+    /// events may. No motion is solved for it.
+    ///
+    /// # Errors
+    /// As [`Posterior::density`].
+    pub(crate) fn draw_place(
+        &self,
+        rng: &mut Rng,
+    ) -> Result<Option<Vec<f64>>> {
+        let line = self.places(Point::Prior(rng))?.line;
+        let is_whole = line.len() == self.dimension()
+            && line.iter().all(|z| z.is_finite());
+        Ok(is_whole.then_some(line))
+    }
+
     /// The model itself, for listeners of one's own.
     pub fn model(&self) -> &'m dyn Model {
         self.model

@@ -369,6 +369,10 @@ impl<'r, K: Kind> Run<'r, K> {
             if !listener.scores() {
                 return Ok(());
             }
+            if let Some(heard) = listener.log_likelihood() {
+                self.log_likelihood += heard;
+                return Ok(());
+            }
         }
         self.log_likelihood +=
             noise.log_likelihood(series.grid(), residuals)?;

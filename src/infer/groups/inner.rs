@@ -12,7 +12,6 @@ use crate::infer::proposal::Mixture;
 use crate::infer::proposal::{PRIOR_SHARE, blended, log_target};
 use crate::infer::schedule::Schedule;
 use crate::infer::search::SearchSpace;
-use crate::infer::start::drawn;
 use crate::infer::weights::systematic;
 use crate::model::{Point, Posterior, Slice};
 use crate::seed::{Rng, Seed};
@@ -173,8 +172,8 @@ impl<'a> Inner<'a> {
         if rng.random::<f64>() >= proposal.prior_share() {
             return Ok(Some(proposal.draw(rng)));
         }
-        let found = drawn(self.group.posterior, rng)?;
-        Ok(found.map(|(_, line)| self.own.iter().map(|&i| line[i]).collect()))
+        let found = self.group.posterior.draw_place(rng)?;
+        Ok(found.map(|line| self.own.iter().map(|&i| line[i]).collect()))
     }
 
     /// ln of the importance weight of own coordinates, in a place of the

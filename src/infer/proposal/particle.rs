@@ -6,7 +6,6 @@ use rayon::prelude::*;
 use super::Mixture;
 use crate::error::Result;
 use crate::infer::log_sum_exp;
-use crate::infer::start::drawn;
 use crate::model::{Density, Point, Posterior};
 use crate::seed::{Rng, Seed};
 
@@ -47,8 +46,8 @@ impl Base {
             Self::Mixture(mixture) if rng.random::<f64>() >= PRIOR_SHARE => {
                 self.particle(posterior, mixture.draw(rng))
             }
-            _ => match drawn(posterior, rng)? {
-                Some((_, z)) => self.particle(posterior, z),
+            _ => match posterior.draw_place(rng)? {
+                Some(z) => self.particle(posterior, z),
                 None => Ok(Particle::without_density(posterior.dimension())),
             },
         }
