@@ -122,11 +122,26 @@ pub(super) fn information<P: Program>(
     }?;
     let bends = columns.bends;
     let slopes = DMatrix::from_vec(z.len(), columns.next, columns.numbers);
-    let mut precision = &slopes * slopes.transpose();
+    let mut precision = product_with_itself(&slopes);
     for (i, bend) in bends.iter().take(z.len()).enumerate() {
         precision[(i, i)] += bend;
     }
     Ok(Information { density, gradient, precision, slopes })
+}
+
+/// A A', from dot products of rows: far fewer rows than columns are too few
+/// for a blocked product.
+fn product_with_itself(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+    let (rows, n) = (matrix.transpose(), matrix.nrows());
+    let mut product = DMatrix::zeros(n, n);
+    for i in 0..n {
+        for j in 0..=i {
+            let dot = rows.column(i).dot(&rows.column(j));
+            product[(i, j)] = dot;
+            product[(j, i)] = dot;
+        }
+    }
+    product
 }
 
 fn fill<K: Number + Forward, P: Program>(
