@@ -214,7 +214,8 @@ fn end(answer: &Answer) -> ExitCode {
         complain(&format!("--strict: not to be used: {why}"));
     }
     let failed = [printed.as_ref().err(), answer.failed.as_ref()];
-    let failed = failed.into_iter().flatten().map(refuse).last();
+    let failed = failed.into_iter().flatten();
+    let failed = failed.fold(None, |_, error| Some(refuse(error)));
     failed.unwrap_or(match answer.refused {
         Some(_) => ExitCode::from(NOT_TO_BE_USED),
         None => ExitCode::SUCCESS,
