@@ -70,12 +70,14 @@ fn every_malformed_input_ends_in_exit_code_2_and_writes_nothing() {
 
 #[test]
 fn bad_arguments_end_in_exit_code_2() {
-    let cases: [(&[&str], &str); 24] = [
+    let cases: [(&[&str], &str); 26] = [
         (&["calibrate", "--friction", "coulom"], "--friction"),
         (&["calibrate", "--noise", "ar(0)"], "--noise"),
         (&["calibrate", "--noise", "ar(2)"], "regular grid"),
         (&["calibrate", "--backend", "nuts2"], "mh"),
-        (&["calibrate", "--backend", "map"], "no draws"),
+        (&["calibrate", "--backend", "map"], "no draws, which a calib"),
+        (&["calibrate", "--backend", "quadrature"], "use mh, random-walk"),
+        (&["compare", "--backend", "mh", "--model", "x"], "use smc, importa"),
         (&["calibrate", "--chains", "0"], "1"),
         (&["bench", "--noise", "infer"], "--noise \"ar(1)\""),
         (
@@ -217,14 +219,13 @@ fn converged(json: &Value) {
     assert!(json["warnings"].as_array().unwrap().is_empty(), "{json}");
 }
 
-/// Where nothing is added, the events of before stay, and it is said.
-fn stays(event: &str, out: &str, text: &str) {
+/// Where nothing is added, the events of the diagnosis before go.
+fn goes(event: &str, out: &str) {
     let arguments = ["diagnose", event, "--odds", "none=1e30", "--out", out];
     let output = couloir(&arguments);
     assert!(output.status.success(), "{}", said(&output));
-    assert!(printed(&output).contains("corrected: of an earlier diagnosis"));
-    let corrected = Path::new(out).join("corrected/event.toml");
-    assert_eq!(std::fs::read_to_string(corrected).unwrap(), text);
+    assert!(printed(&output).contains("draws.csv, pictures/\n"));
+    assert!(!Path::new(out).join("corrected").exists());
 }
 
 #[test]
@@ -267,7 +268,7 @@ fn a_diagnosis_writes_an_event_that_runs() {
     };
     let apart = of(&again, "mean") - of(&json, "mean");
     assert!(apart.abs() < of(&json, "sd") / 3.0, "{apart}");
-    stays(event, out, &text);
+    goes(event, out);
 }
 
 #[test]
@@ -321,7 +322,8 @@ fn a_calibration_writes_what_the_formats_say() {
     let page = read("report.html");
     assert!(page.contains("<svg") && page.contains("Lautaret-like"));
     let names: Vec<_> = std::fs::read_dir(&out).unwrap().collect();
-    assert_eq!(names.len(), 3, "{names:?}");
+    // And couloir.sha256, which says that these are its own.
+    assert_eq!(names.len(), 4, "{names:?}");
 }
 
 #[test]
@@ -508,7 +510,7 @@ fn models_are_compared_by_their_predictions() {
         "--model",
         "voellmy, ar(1)",
         "--draws",
-        "1000",
+        "125",
         "--lfo",
         "--lfo-from",
         "12",
@@ -590,6 +592,220 @@ fn an_output_that_cannot_be_written_is_not_the_inputs_fault() {
     arguments.extend(QUICK);
     let output = couloir(&arguments);
     assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    // Before the work: nothing was begun, and nothing is answered.
+    let text = said(&output);
+    assert_eq!((text.lines().count(), output.stdout.len()), (1, 0), "{text}");
+    for part in ["--out: /proc/couloir: the folder", "give another folder"] {
+        assert!(text.contains(part), "{text}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_answer_is_told_although_it_cannot_be_written() {
+    let out = fresh("full");
+    // No file may be longer than some KB: what is looked at before is empty.
+    let script = "trap '' XFSZ; ulimit -f 4; exec \"$@\"";
+    let output = Command::new("bash")
+        .args(["-c", script, "bash", env!("CARGO_BIN_EXE_couloir")])
+        .args(["calibrate", REFERENCE, "--json", "--out"])
+        .arg(&out)
+        .args(QUICK)
+        .output()
+        .unwrap();
+    let text = said(&output);
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    let last = text.lines().last().unwrap();
+    assert!(last.contains("the file could not be written"), "{text}");
+    let json: Value = serde_json::from_str(&printed(&output)).unwrap();
+    assert!(json["parameters"]["mu"]["mean"].is_number());
+    let left = std::fs::read_dir(&out).map_or(0, Iterator::count);
+    assert_eq!(left, 0);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_answer_that_cannot_be_printed_is_an_error_unless_nobody_reads_on() {
+    use std::process::Stdio;
+    let couloir = || {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_couloir"));
+        command.args(["simulate", REFERENCE, "--json"]);
+        command
+    };
+    let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
+    let output = couloir().stdout(full).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let text = said(&output);
+    assert_eq!(text.lines().count(), 1, "{text}");
+    assert!(text.contains("could not be printed"), "{text}");
+    // A pipe whose other end is closed.
+    let mut child = couloir()
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    assert_eq!(said(&output), "");
+}
+
+/// All files below a folder, by their names in it.
+fn files_below(folder: &Path) -> Vec<String> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        match entry.path().is_dir() {
+            false => found.push(name),
+            true => {
+                let below = files_below(&entry.path()).into_iter();
+                found.extend(below.map(|inner| format!("{name}/{inner}")));
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+#[test]
+fn a_run_owns_its_output_folder() {
+    let folder = fresh("owned");
+    let out = folder.to_str().unwrap();
+    let run = |verb: &str| couloir(&[verb, "--out", out]);
+    let diagnosed = run("diagnose");
+    assert!(diagnosed.status.success(), "{}", said(&diagnosed));
+    assert!(folder.join("corrected/event.toml").is_file());
+    let corrected = folder.join("corrected");
+    let corrected = corrected.to_str().unwrap();
+    // It reads what it would replace.
+    let read = couloir(&["simulate", corrected, "--out", out]);
+    assert_eq!(read.status.code(), Some(2));
+    assert!(said(&read).contains("put its results in its place"));
+    let simulated = run("simulate");
+    assert!(simulated.status.success(), "{}", said(&simulated));
+    let files = ["couloir.sha256", "simulation.csv", "simulation.json"];
+    assert_eq!(files_below(&folder), files);
+    // What is not couloir's stays, and stops what would replace it.
+    std::fs::write(folder.join("report.html"), "mine").unwrap();
+    let refused = run("calibrate");
+    let text = said(&refused);
+    assert_eq!(refused.status.code(), Some(2), "{text}");
+    assert_eq!((text.lines().count(), refused.stdout.len()), (1, 0), "{text}");
+    for part in ["report.html: couloir did not write it", "another --out"] {
+        assert!(text.contains(part), "{text}");
+    }
+    let mine = std::fs::read_to_string(folder.join("report.html")).unwrap();
+    assert_eq!((mine.as_str(), files_below(&folder).len()), ("mine", 4));
+}
+
+/// What a run says of an event, as words and as JSON.
+fn told_of(folder: &Path) -> (String, Value) {
+    let event = folder.to_str().unwrap();
+    let words = couloir(&["simulate", event]);
+    assert!(words.status.success(), "{}", said(&words));
+    let json = couloir(&["simulate", event, "--json"]);
+    let words = printed(&words);
+    let words: Vec<_> = words.split_whitespace().collect();
+    let json = serde_json::from_str(&printed(&json)).unwrap();
+    (words.join(" "), json)
+}
+
+#[test]
+fn a_depth_that_nobody_gave_is_told_where_the_law_needs_one() {
+    let without = cases::EVENT.replacen("[flow]\ndepth = 1.5\n", "", 1);
+    let told = |name: &str, event: &str| told_of(&with_event(name, event));
+    let (words, json) = told("no-depth", &without);
+    let note = json["notes"][0].as_str().unwrap();
+    assert!(note.contains("no flow depth, which voellmy friction"), "{note}");
+    assert!(note.contains("xi stands for the product xi h"), "{note}");
+    assert!(words.contains(note), "{words}");
+    let dry = without.replacen("voellmy", "coulomb", 1);
+    for (name, event) in [("dry", dry.as_str()), ("depth", cases::EVENT)] {
+        let (_, json) = told(name, event);
+        assert_eq!(json["notes"].as_array().unwrap().len(), 0, "{json}");
+    }
+}
+
+/// The good event with another recording.
+fn with_recording(name: &str, recording: &str) -> PathBuf {
+    let folder = with_event(name, cases::EVENT);
+    std::fs::write(folder.join("recording.csv"), recording).unwrap();
+    folder
+}
+
+#[test]
+fn columns_that_nobody_asked_for_are_passed_over() {
+    let rows = "hdop,velocity,note,t\n1,2.5,a,1\n2,5,b,2\n1,7.4,,3\n";
+    let (_, json) = told_of(&with_recording("columns", rows));
+    let note = json["notes"][0].as_str().unwrap();
+    assert!(note.ends_with("recording.csv: \"hdop\", \"note\"."), "{note}");
+    let (_, plain) = told_of(&with_event("plain", cases::EVENT));
+    assert_eq!(json["velocity"], plain["velocity"]);
+}
+
+#[test]
+fn what_could_be_true_is_warned_of() {
+    let rows = |row: fn(f64) -> (f64, f64)| {
+        let rows = (1..=12).map(|i| row(f64::from(i)));
+        let rows = rows.map(|(t, v)| format!("{t},{v}\n"));
+        "t,velocity\n".to_owned() + &rows.collect::<String>()
+    };
+    let warned = [
+        // 5 m/s2 on a slope that gives 5.9 at the most; 18 in km/h.
+        ("km-h", rows(|i| (0.3 * i, 5.4 * i)), "if these are km/h, divide"),
+        ("late", rows(|i| (30.0 + i, i)), "subtract 31 from all times"),
+        (
+            "below",
+            rows(|i| (i, i * (12.5 - i) / 5.0 - 3.0 * f64::from(i == 12.0))),
+            "goes down to velocity = -1.8",
+        ),
+    ];
+    for (name, recording, part) in warned {
+        let (words, json) = told_of(&with_recording(name, &recording));
+        let all = json["warnings"].as_array().unwrap();
+        assert_eq!(all.len(), 1, "{name}: {all:?}");
+        let warning = all[0].as_str().unwrap();
+        assert!(warning.contains(part), "{warning}");
+        assert!(warning.contains("event.toml: the "), "{warning}");
+        assert!(
+            words.contains(&format!("Warning: {}", all[0].as_str().unwrap()))
+        );
+    }
+    let (_, json) = told_of(&with_event("undoubted", cases::EVENT));
+    assert_eq!(json["warnings"].as_array().unwrap().len(), 0, "{json}");
+}
+
+#[test]
+fn draws_are_as_many_as_were_asked_for_whatever_keeps_them() {
+    for backend in ["mh", "smc", "bridge"] {
+        let out = fresh("draws");
+        let mut arguments = vec!["calibrate", "--backend", backend, "--out"];
+        arguments.push(out.to_str().unwrap());
+        arguments.extend(["--draws", "300", "--warmup", "300"]);
+        let output = couloir(&arguments);
+        assert!(output.status.success(), "{}", said(&output));
+        let draws = std::fs::read_to_string(out.join("draws.csv")).unwrap();
+        assert_eq!(draws.lines().count(), 1 + 4 * 300, "{backend}");
+    }
+}
+
+#[test]
+fn a_challenge_says_before_how_long_it_will_take() {
+    let power = ["challenge", "--cases", "1", "--power", "cohesion"];
+    // Stopped once it has said so: the cases themselves take minutes.
+    let mut child = Command::new(env!("CARGO_BIN_EXE_couloir"))
+        .args(power)
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut said = std::io::BufReader::new(child.stderr.take().unwrap());
+    let mut line = String::new();
+    std::io::BufRead::read_line(&mut said, &mut line).unwrap();
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(line.contains("15 cases to diagnose on"), "{line}");
+    assert!(line.contains(": about "), "{line}");
 }
 
 #[test]

@@ -51,6 +51,9 @@ fn every_shared_event_loads_if_at_hand() {
         let file = load_folder(&folder);
         assert!(file.event.recordings().count() == 1, "{folder:?}");
         assert!(file.priors.contains_key("sigma2"), "{folder:?}");
+        // Nothing that was measured, or simulated well, is taken for a slip.
+        assert_eq!(file.warnings, [""; 0], "{folder:?}");
+        assert_eq!(file.notes, [""; 0], "{folder:?}");
         let again = load_folder(&folder.join("event.toml"));
         assert_eq!(again.event, file.event);
     }

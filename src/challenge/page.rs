@@ -12,26 +12,41 @@ use super::score::{
     EffectScore, NONE, Outcome, Score, Share, UNKNOWN, failures,
 };
 use super::trial::Scored;
+use crate::report::digits::share_interval;
 use crate::report::svg::{
     Bin, Matrix, Picture, matrix as matrix_picture, reliability,
 };
 use crate::report::{figure, standalone};
 
-/// `81 ± 3 % (162 of 200)`.
+/// `81 % (76 to 85 %; 162 of 200)`.
 fn told(share: &Share) -> String {
     let Share { hits, of } = share;
     if *of == 0 {
         return "no case".to_owned();
     }
-    let (value, se) = (100.0 * share.value(), 100.0 * share.se());
-    format!("{value:.0} ± {se:.0} % ({hits} of {of})")
+    let (low, high) = share_interval(*hits, *of);
+    let [value, low, high] =
+        [share.value(), low, high].map(|share| 100.0 * share);
+    format!("{value:.0} % ({low:.0} to {high:.0} %; {hits} of {of})")
 }
 
 fn two(x: f64) -> String {
     if x.is_finite() { format!("{x:.2}") } else { "–".to_owned() }
 }
 
-/// What came out, in sentences.
+/// How well stretches were located, where any was.
+fn overlap(s: &Score) -> String {
+    if !s.median_iou.is_finite() {
+        return String::new();
+    }
+    format!(
+        "; the located stretch overlaps the true one by {} in the median \
+         (intersection over union)",
+        two(s.median_iou)
+    )
+}
+
+/// What came out, in sentences; shares with their 90 % intervals.
 pub fn words(scored: &Scored) -> Vec<String> {
     let s = &scored.score;
     let mut said = vec![found(s), visible(s)];
@@ -40,11 +55,9 @@ pub fn words(scored: &Scored) -> Vec<String> {
         told(&s.false_alarms)
     ));
     said.push(format!(
-        "Where something is missing, it was noticed in {}; the located \
-         stretch overlaps the true one by {} in the median (intersection \
-         over union).",
+        "Where something is missing, it was noticed in {}{}.",
         told(&s.detected),
-        two(s.median_iou)
+        overlap(s)
     ));
     said.push(format!(
         "The corrected model leaves at most 1.15 times the noise in {}.",
@@ -402,8 +415,8 @@ mod tests {
     #[test]
     fn the_words_have_the_counts() {
         let said = words(&some()).join("\n");
-        assert!(said.contains("in the reported group in 50 ±"), "{said}");
-        assert!(said.contains("reported in 0 ±"), "{said}");
+        assert!(said.contains("in the reported group in 50 % ("), "{said}");
+        assert!(said.contains("reported in 0 % (0 to"), "{said}");
         assert!(said.contains("Of 1 effects that no catalogue"), "{said}");
     }
 

@@ -2,6 +2,8 @@
 
 use clap::Args;
 
+use crate::error::{Error, Result};
+
 /// A refusal to take a result that should not be used for one.
 #[derive(Debug, Args)]
 pub(super) struct Strict {
@@ -16,7 +18,7 @@ impl Strict {
     /// A result with what stands against using it.
     pub(super) fn answer(&self, text: String, doubts: &[String]) -> Answer {
         let refused = doubts.first().filter(|_| self.strict).cloned();
-        Answer { text, refused }
+        Answer { text, refused, failed: None }
     }
 }
 
@@ -26,10 +28,19 @@ pub(super) struct Answer {
     pub(super) text: String,
     /// Why it should not be used, where that was to be told by the exit code.
     pub(super) refused: Option<String>,
+    /// Why it could not be written, too.
+    pub(super) failed: Option<Error>,
+}
+
+impl Answer {
+    /// The same, after it was written or was not.
+    pub(super) fn after(self, wrote: Result<()>) -> Self {
+        Self { failed: wrote.err(), ..self }
+    }
 }
 
 impl From<String> for Answer {
     fn from(text: String) -> Self {
-        Self { text, refused: None }
+        Self { text, refused: None, failed: None }
     }
 }

@@ -3,13 +3,15 @@
 use clap::Args;
 use serde_json::json;
 
-use super::calibrate::{pretty, wrapped};
+use super::answer::Answer;
+use super::calibrate::{doubted, pretty, wrapped};
 use super::progress::Told;
-use super::{Output, Subject, Work, width};
+use super::results::Output;
+use super::study::Read;
+use super::{Subject, Work, width};
 use crate::draws::summarise;
 use crate::error::Result;
 use crate::infer::{BACKENDS, Inference, infer};
-use crate::io::write_all;
 use crate::model::Posterior;
 use crate::physics::friction::Laws;
 use crate::seed::Seed;
@@ -44,28 +46,33 @@ impl Row {
 }
 
 impl Arguments {
-    pub(super) fn run(&self, laws: &Laws) -> Result<String> {
-        let model = self.subject.named(laws)?;
+    pub(super) fn run(&self, laws: &Laws) -> Result<Answer> {
+        let results =
+            self.output.ready(&["bench.json"], self.subject.paths())?;
+        let Read { model, notes, warnings, .. } = self.subject.named(laws)?;
         let posterior = Posterior::new(&model)?;
         let told = Told::new();
         let mut rows = Vec::new();
         for entry in BACKENDS {
-            let backend = (entry.make)(&self.work.effort()?);
+            let backend = self.work.backend(entry.name)?;
             let seed = Seed::new(self.work.seed);
             let found = infer(backend.as_ref(), &posterior, seed, &told)?;
             rows.push(row(entry.name, found));
         }
         drop(told);
         let name = model.event().name();
-        let document = pretty(&self.document(name, &rows));
-        if let Some(folder) = &self.output.out {
-            write_all(folder, &[("bench.json", document.clone())])?;
-        }
-        if self.output.json {
-            return Ok(document);
-        }
+        let mut document = self.document(name, &rows);
+        (document["notes"], document["warnings"]) =
+            (json!(notes), json!(warnings));
+        let document = pretty(&document);
+        let wrote =
+            results.write(|| Ok(vec![("bench.json", document.clone())]));
         let title = format!("{name}: {}, {}", model.friction(), model.noise());
-        Ok(tell(&title, &rows))
+        let text = match self.output.json {
+            true => document,
+            false => tell(&title, &rows) + &doubted(&notes, &warnings),
+        };
+        Ok(Answer::from(text).after(wrote))
     }
 
     fn document(&self, event: &str, rows: &[Row]) -> serde_json::Value {

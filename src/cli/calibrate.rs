@@ -5,14 +5,14 @@ use serde_json::json;
 
 use super::answer::{Answer, Strict};
 use super::progress::Told;
+use super::results::Output;
 use super::study::Read;
 use super::thin::Thin;
-use super::{Output, Subject, Work, backend_name, width, written};
+use super::{Subject, Work, backend_giving, width};
 use crate::averaged::{Open, calibrate_open};
 use crate::calibrate::Calibration;
 use crate::error::Result;
-use crate::infer::{Suited, backend, suited};
-use crate::io::write_all;
+use crate::infer::{Suited, suited};
 use crate::physics::friction::Laws;
 use crate::report::{
     PROGRAM, calibration_json, in_words, noises, page, picture, table,
@@ -30,7 +30,7 @@ pub(super) struct Arguments {
     /// laplace-mixture, bridge or reciprocal; where not given, mh, or
     /// laplace-mixture for an event with mechanisms, which may have several
     /// modes
-    #[arg(long, value_parser = backend_name)]
+    #[arg(long, value_parser = with_draws)]
     backend: Option<String>,
     /// Say what is known of the law's parameters when the rest of the physics
     /// is left open, too: with a force of free form in the model
@@ -42,10 +42,19 @@ pub(super) struct Arguments {
     output: Output,
 }
 
+fn with_draws(name: &str) -> Result<String, String> {
+    let purpose = "yields no draws, which a calibration is made of";
+    backend_giving(name, purpose, |gives| gives.draws)
+}
+
+/// What a calibration writes.
+const FILES: [&str; 3] = ["report.html", "calibration.json", "draws.csv"];
+
 impl Arguments {
     pub(super) fn run(&self, laws: &Laws) -> Result<Answer> {
         let subject =
             Subject { thin: self.thin.clone(), ..self.subject.clone() };
+        let results = self.output.ready(&FILES, subject.paths())?;
         let read = subject.read(laws)?;
         // Summed before the work, as they were read.
         let inputs = read.inputs.clone();
@@ -54,26 +63,26 @@ impl Arguments {
         json["inputs"] = json!(inputs);
         json["program"] = PROGRAM.into();
         let json = pretty(&json);
-        if let Some(folder) = &self.output.out {
-            let files = [
-                ("calibration.json", json.clone()),
-                ("draws.csv", found.draws.to_csv()),
-                ("report.html", page(&found.report)),
-            ];
-            write_all(folder, &files)?;
-        }
-        let text = if self.output.json { json } else { self.tell(&found) };
-        Ok(self.strict.answer(text, &found.report.doubts))
+        let wrote = results.write(|| {
+            let draws = found.draws.to_csv();
+            let texts = [page(&found.report), json.clone(), draws];
+            Ok(FILES.into_iter().zip(texts).collect())
+        });
+        let text = match self.output.json {
+            true => json,
+            false => tell(&found) + &results.told(&wrote, &FILES, width()),
+        };
+        let answer = self.strict.answer(text, &found.report.doubts);
+        Ok(answer.after(wrote))
     }
 
     fn found(&self, read: Read) -> Result<Calibration> {
-        let Read { model, infers_noise, thinned, .. } = read;
-        let effort = self.work.effort()?;
+        let Read { model, infers_noise, notes, warnings, .. } = read;
         let (backend, why) = match &self.backend {
-            Some(name) => (backend(name, &effort)?, None),
+            Some(name) => (self.work.backend(name)?, None),
             None => {
                 let Suited { backend, why } =
-                    suited(&model, infers_noise, &effort)?;
+                    suited(&model, infers_noise, &self.work.effort()?)?;
                 (backend, Some(why.to_owned()))
             }
         };
@@ -83,39 +92,47 @@ impl Arguments {
         let mut found =
             calibrate_open(&model, open, backend.as_ref(), seed, &told)?;
         found.report.backend_why = why;
-        found.report.notes = thinned;
+        found.report.notes = notes;
+        found.report.warnings.splice(..0, warnings);
         Ok(found)
     }
+}
 
-    fn tell(&self, found: &Calibration) -> String {
-        let width = width();
-        let mut text = String::new();
-        text.push_str(&picture(&found.report, width, 16));
+fn tell(found: &Calibration) -> String {
+    let width = width();
+    let mut text = String::new();
+    text.push_str(&picture(&found.report, width, 16));
+    text.push('\n');
+    text.push_str(&table(&found.report, width));
+    text.push('\n');
+    let noises = noises(&found.report, width);
+    if !noises.is_empty() {
+        text.push_str(&noises);
         text.push('\n');
-        text.push_str(&table(&found.report, width));
-        text.push('\n');
-        let noises = noises(&found.report, width);
-        if !noises.is_empty() {
-            text.push_str(&noises);
-            text.push('\n');
-        }
-        for sentence in in_words(&found.report) {
-            text.push_str(&wrapped(&sentence, width));
-        }
-        let report = &found.report;
-        let run = format!(
-            "{}: {} simulations, {:.2} s, seed {}",
-            report.backend_told(),
-            report.simulations,
-            report.seconds,
-            report.seed
-        );
-        text.push('\n');
-        text.push_str(&wrapped(&run, width));
-        let files = ["report.html", "calibration.json", "draws.csv"];
-        text.push_str(&written(self.output.out.as_deref(), &files));
-        text
     }
+    for sentence in in_words(&found.report) {
+        text.push_str(&wrapped(&sentence, width));
+    }
+    let report = &found.report;
+    let run = format!(
+        "{}: {} simulations, {:.2} s, seed {}",
+        report.backend_told(),
+        report.simulations,
+        report.seconds,
+        report.seed
+    );
+    text.push('\n');
+    text.push_str(&wrapped(&run, width));
+    text
+}
+
+/// What was noted and what was doubted of an event, behind an answer.
+pub(super) fn doubted(notes: &[String], warnings: &[String]) -> String {
+    let warnings = warnings.iter().map(|w| format!("Warning: {w}."));
+    let all: Vec<String> = notes.iter().cloned().chain(warnings).collect();
+    let width = width();
+    let lines: String = all.iter().map(|said| wrapped(said, width)).collect();
+    if lines.is_empty() { lines } else { format!("\n{lines}") }
 }
 
 /// A JSON document as it is printed and written.

@@ -5,20 +5,22 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::answer;
 use super::calibrate::{pretty, wrapped};
-use super::progress::Told;
+use super::pace::Pace;
+use super::results::{Results, folder};
 use super::study::assemble;
-use super::{at_least_one, folder, width, written};
+use super::{at_least_one, width};
 use crate::challenge::{
-    Answer, Case, Coordinate, Errors, Interval, Mix, PowerTable, cases,
-    challenge_json, page, power_cases, power_page, run, words,
+    Answer, Case, Coordinate, Errors, Interval, Mix, PowerTable, Scored,
+    cases, challenge_json, page, power_cases, power_page, run, words,
 };
 use crate::diagnosis::{
     Diagnosis, Options, Sharing, Together, diagnose, diagnose_together,
 };
 use crate::error::{Error, Result};
 use crate::infer::Quiet;
-use crate::io::{parse_event, write_all};
+use crate::io::parse_event;
 use crate::model::Assembled;
 use crate::physics::forces::Axis;
 use crate::physics::friction::Laws;
@@ -57,8 +59,12 @@ pub(super) struct Arguments {
 const SIZES: [f64; 5] = [0.1, 0.2, 0.4, 0.7, 1.0];
 const NOISES: [f64; 3] = [0.1, 0.3, 0.9];
 
+/// How long a case of one recording takes, and of two, on one processor of
+/// 2026 \[s\]; what it takes here is told once some are done.
+const SECONDS: [f64; 2] = [8.0, 20.0];
+
 impl Arguments {
-    pub(super) fn run(&self) -> Result<String> {
+    pub(super) fn run(&self) -> Result<answer::Answer> {
         match &self.power {
             Some(mechanism) => self.study(mechanism),
             None => self.score(),
@@ -69,47 +75,45 @@ impl Arguments {
         if self.recordings == 2 { Mix::Two } else { Mix::One }
     }
 
-    fn score(&self) -> Result<String> {
+    /// The diagnoses of all cases.
+    fn scored(&self, all: &[Case]) -> Result<Scored> {
+        let each = SECONDS[usize::from(self.recordings == 2)];
+        let told = Pace::begun(all.len(), each);
+        run(all, &|case| answer(case, self.seed), true, &told)
+    }
+
+    fn score(&self) -> Result<answer::Answer> {
+        let files = ["challenge.html", "challenge.json"];
+        let results = Results::ready(self.out.as_deref(), &files, &[])?;
         let all = cases(self.cases, self.seed, self.mix(), self.errors)?;
-        let told = Told::new();
-        let seed = self.seed;
-        let scored = run(&all, &|case| answer(case, seed), true, &told)?;
-        drop(told);
+        let scored = self.scored(&all)?;
         let json = pretty(&challenge_json(&scored));
-        if let Some(folder) = &self.out {
-            let files = [
-                ("challenge.json", json.clone()),
-                (
-                    "challenge.html",
-                    page(&scored, self.mix(), self.errors, self.seed),
-                ),
-            ];
-            write_all(folder, &files)?;
-        }
+        let wrote = results.write(|| {
+            let page = page(&scored, self.mix(), self.errors, self.seed);
+            Ok(files.into_iter().zip([page, json.clone()]).collect())
+        });
         if self.json {
-            return Ok(json);
+            return Ok(answer::Answer::from(json).after(wrote));
         }
         let width = width();
         let mut text: String =
             words(&scored).iter().map(|s| wrapped(s, width)).collect();
-        let files = ["challenge.html", "challenge.json"];
-        text.push_str(&written(self.out.as_deref(), &files));
-        Ok(text)
+        text.push_str(&results.told(&wrote, &files, width));
+        Ok(answer::Answer::from(text).after(wrote))
     }
 
-    fn study(&self, mechanism: &str) -> Result<String> {
+    fn study(&self, mechanism: &str) -> Result<answer::Answer> {
+        let results =
+            Results::ready(self.out.as_deref(), &["power.html"], &[])?;
         let count = self.cases.div_ceil(SIZES.len() * NOISES.len());
         let all = power_cases(mechanism, &SIZES, &NOISES, count, self.seed)?;
-        let told = Told::new();
-        let seed = self.seed;
-        let scored = run(&all, &|case| answer(case, seed), true, &told)?;
-        drop(told);
+        let scored = self.scored(&all)?;
         let tables: Vec<PowerTable> = PowerTable::of(&scored.outcomes);
-        if let Some(folder) = &self.out {
-            let page = power_page(&tables, self.seed);
-            write_all(folder, &[("power.html", page)])?;
-        }
-        Ok(tables.iter().map(PowerTable::markdown).collect())
+        let wrote = results.write(|| {
+            Ok(vec![("power.html", power_page(&tables, self.seed))])
+        });
+        let text: String = tables.iter().map(PowerTable::markdown).collect();
+        Ok(answer::Answer::from(text).after(wrote))
     }
 }
 

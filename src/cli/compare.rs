@@ -4,16 +4,17 @@
 use clap::Args;
 use serde_json::json;
 
-use super::calibrate::{pretty, wrapped};
+use super::answer::Answer;
+use super::calibrate::{doubted, pretty, wrapped};
 use super::predictive::{self, Predicted};
 use super::progress::Told;
-use super::study::assemble;
-use super::{Output, Subject, Work, at_least_one, backend_name, width};
+use super::results::Output;
+use super::study::{NoDepth, assemble, said};
+use super::{Subject, Work, at_least_one, backend_giving, width};
 use crate::draws::{Lfo, Loo};
 use crate::elpd;
 use crate::error::{Error, Result};
-use crate::infer::{Backend, Evidence, Inference, backend, infer};
-use crate::io::write_all;
+use crate::infer::{Backend, Evidence, Inference, infer};
 use crate::model::{Assembled, Posterior};
 use crate::physics::friction::Laws;
 use crate::seed::Seed;
@@ -30,8 +31,9 @@ pub(super) struct Arguments {
     models: Vec<String>,
     #[command(flatten)]
     work: Work,
-    /// Backend with an evidence: smc, importance, bridge or reciprocal
-    #[arg(long, default_value = "smc", value_parser = backend_name)]
+    /// Backend with an evidence: smc, importance, laplace-mixture, bridge or
+    /// reciprocal
+    #[arg(long, default_value = "smc", value_parser = with_evidence)]
     backend: String,
     /// Predict each value from those before it as well (leave-future-out),
     /// fitting again where need be
@@ -43,6 +45,11 @@ pub(super) struct Arguments {
     lfo_from: Option<usize>,
     #[command(flatten)]
     output: Output,
+}
+
+fn with_evidence(name: &str) -> Result<String, String> {
+    let purpose = "gives no evidence with draws, which models are compared by";
+    backend_giving(name, purpose, |gives| gives.draws && gives.evidence)
 }
 
 /// One model's part of a comparison.
@@ -101,13 +108,18 @@ fn ahead(compared: &[Compared]) -> Vec<Predicted<'_>> {
 }
 
 impl Arguments {
-    pub(super) fn run(&self, laws: &Laws) -> Result<String> {
+    pub(super) fn run(&self, laws: &Laws) -> Result<Answer> {
         if self.models.len() < 2 {
             return Err(Error::input(
                 "a comparison needs two models or more: give --model \
                  \"voellmy, iid\" --model \"voellmy, ar(1)\"",
             ));
         }
+        let files = ["comparison.json"];
+        let results = self.output.ready(&files, self.subject.paths())?;
+        let file = self.subject.load(laws)?;
+        let event = file.event.name().to_owned();
+        let (mut notes, warnings) = said(&file);
         let told = Told::new();
         let compared = self
             .models
@@ -115,15 +127,22 @@ impl Arguments {
             .map(|text| self.compared(text, laws, &told))
             .collect::<Result<Vec<_>>>()?;
         drop(told);
-        let event = self.subject.load(laws)?.event.name().to_owned();
-        let document = pretty(&self.document(&event, &compared));
-        if let Some(folder) = &self.output.out {
-            write_all(folder, &[("comparison.json", document.clone())])?;
+        let depth = NoDepth::of(&file);
+        for c in &compared {
+            notes.extend(depth.note(&c.friction, laws));
         }
-        if self.output.json {
-            return Ok(document);
-        }
-        Ok(tell(&event, &compared))
+        notes.dedup();
+        let mut document = self.document(&event, &compared);
+        (document["notes"], document["warnings"]) =
+            (json!(notes), json!(warnings));
+        let document = pretty(&document);
+        let wrote =
+            results.write(|| Ok(vec![("comparison.json", document.clone())]));
+        let text = match self.output.json {
+            true => document,
+            false => tell(&event, &compared) + &doubted(&notes, &warnings),
+        };
+        Ok(Answer::from(text).after(wrote))
     }
 
     fn compared(
@@ -134,7 +153,7 @@ impl Arguments {
     ) -> Result<Compared> {
         let model = self.model(text, laws)?;
         let posterior = Posterior::new(&model)?;
-        let backend = backend(&self.backend, &self.work.effort()?)?;
+        let backend = self.work.backend(&self.backend)?;
         let seed = Seed::new(self.work.seed);
         let found = infer(backend.as_ref(), &posterior, seed, told)?;
         let (evidence, loo) = self.judged(&found, &posterior)?;

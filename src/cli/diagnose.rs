@@ -10,15 +10,15 @@ use serde_json::{Map, Value};
 use super::answer::{Answer, Strict};
 use super::calibrate::pretty;
 use super::progress::Told;
+use super::results::Output;
 use super::study::Read;
 use super::thin::Thin;
-use super::{Output, Subject, width, written};
+use super::{Subject, width};
 use crate::diagnosis::{
     Diagnosis, Odds, Options, Sharing, Together, diagnose, diagnose_together,
     page, pictures, summary,
 };
 use crate::error::{Error, Result};
-use crate::io::write_all;
 use crate::model::Assembled;
 use crate::physics::friction::Laws;
 
@@ -75,6 +75,10 @@ fn odds(text: &str) -> Result<(String, f64), String> {
 /// The folder of the events with what was found, within that of the results.
 const CORRECTED: &str = "corrected";
 
+/// What a diagnosis writes; the last where there is something to correct.
+const FILES: [&str; 5] =
+    ["report.html", "diagnosis.json", "draws.csv", "pictures/", "corrected/"];
+
 /// A diagnosis with what it is of.
 struct Found {
     found: Diagnosis,
@@ -90,38 +94,31 @@ type Files = Vec<(PathBuf, String)>;
 impl Arguments {
     pub(super) fn run(&self, laws: &Laws) -> Result<Answer> {
         let subjects = self.subjects(&self.thin);
+        let results = self.output.ready(&FILES, &self.events)?;
         let told = Told::new();
         let Found { found, labels, inputs } =
             self.found(&subjects, laws, &told)?;
         drop(told);
         let mut json = found.json();
         json["inputs"] = Value::Object(inputs);
-        let mut names =
-            vec!["report.html", "diagnosis.json", "draws.csv", "pictures/"];
-        let mut old = None;
-        if let Some(folder) = &self.output.out {
+        let mut names = FILES.to_vec();
+        let wrote = results.write(|| {
             let again = corrected(&subjects, &labels, &found, laws)?;
             if again.is_empty() {
-                let path = folder.join(CORRECTED);
-                old = path.is_dir().then_some(path);
-            } else {
-                names.push("corrected/");
+                names.pop();
             }
             let mut files = reports(&found, &json);
             files.extend(again);
-            write_all(folder, &files)?;
-        }
-        if self.output.json {
-            let json = pretty(&json);
-            return Ok(self.strict.answer(json, &found.doubts));
-        }
-        let mut text = summary(&found, width());
-        text.push_str(&written(self.output.out.as_deref(), &names));
-        if let Some(old) = old {
-            let old = old.display();
-            text.push_str(&format!("{old}: of an earlier diagnosis\n"));
-        }
-        Ok(self.strict.answer(text, &found.doubts))
+            Ok(files)
+        });
+        let text = match self.output.json {
+            true => pretty(&json),
+            false => {
+                summary(&found, width())
+                    + &results.told(&wrote, &names, width())
+            }
+        };
+        Ok(self.strict.answer(text, &found.doubts).after(wrote))
     }
 
     /// The diagnosis of the events and, where that was asked for, what
@@ -137,14 +134,15 @@ impl Arguments {
         let halved = self.subjects(&self.thin.halved());
         let halved =
             self.check_rate.then(|| read_all(&halved, laws)).transpose()?;
-        let said = read.iter().flat_map(|one| one.thinned.clone()).collect();
+        let (notes, warnings) = notes(&read);
         let sums: Vec<_> = read.iter().map(|one| one.inputs.clone()).collect();
         let (mut found, labels) = self.diagnose(read, told)?;
-        found.notes = said;
+        found.notes = notes;
         if let Some(read) = halved {
             let (again, _) = self.diagnose(read, told)?;
             found.check_rate(&again);
         }
+        found.warnings.splice(..0, warnings);
         let inputs = inputs(sums, &labels);
         Ok(Found { found, labels, inputs })
     }
@@ -195,6 +193,24 @@ impl Arguments {
         let found = diagnose(&model, model.event(), &options, told)?;
         Ok((found, Vec::new()))
     }
+}
+
+/// What to know of how all events were read, and what is doubtful of them;
+/// what holds for several is said once.
+fn notes(read: &[Read]) -> (Vec<String>, Vec<String>) {
+    let (mut notes, mut warnings) = (Vec::new(), Vec::new());
+    for one in read {
+        for (all, own) in
+            [(&mut notes, &one.notes), (&mut warnings, &one.warnings)]
+        {
+            for said in own {
+                if !all.contains(said) {
+                    all.push(said.clone());
+                }
+            }
+        }
+    }
+    (notes, warnings)
 }
 
 fn read_all(subjects: &[Subject], laws: &Laws) -> Result<Vec<Read>> {

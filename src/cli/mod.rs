@@ -10,14 +10,17 @@ mod challenge;
 mod compare;
 mod diagnose;
 mod new;
+mod pace;
 mod predictive;
 mod progress;
 mod reproduce;
+mod results;
 mod simulate;
 mod study;
 mod thin;
 
-use std::path::{Path, PathBuf};
+use std::io::{ErrorKind, Write as _};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -25,7 +28,7 @@ use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use self::answer::Answer;
 use self::thin::Thin;
 use crate::error::{Error, Result};
-use crate::infer::{Effort, backend};
+use crate::infer::{BACKENDS, Backend, Bridge, Effort, Gives, Smc, backend};
 use crate::physics::friction::Laws;
 
 /// Calibrates avalanche friction laws from recordings, in a Bayesian way.
@@ -81,9 +84,11 @@ struct Work {
     /// Independent chains
     #[arg(long, default_value_t = 4, value_parser = at_least_one)]
     chains: usize,
-    /// Draws kept of each chain
-    #[arg(long, default_value_t = 10_000, value_parser = at_least_one)]
-    draws: usize,
+    /// Draws kept of each chain, 10000 where not given; smc and bridge keep
+    /// as many particles as all chains together draws, 500 for each where not
+    /// given; importance and laplace-mixture weigh half as many
+    #[arg(long, value_name = "N", value_parser = at_least_one)]
+    draws: Option<usize>,
     /// Steps before those, for tuning
     #[arg(long, default_value_t = 5_000)]
     warmup: usize,
@@ -94,45 +99,36 @@ struct Work {
 
 impl Work {
     fn effort(&self) -> Result<Effort> {
-        if self.chains.saturating_mul(self.draws) > MOST_DRAWS {
+        let (chains, warmup) = (self.chains, self.warmup);
+        let draws = self.draws.unwrap_or(Effort::new().draws);
+        if chains.saturating_mul(draws) > MOST_DRAWS {
             return Err(Error::input(format!(
-                "{} chains of {} draws are more than {MOST_DRAWS} in all, \
-                 which memory is kept to; ask for fewer --draws",
-                self.chains, self.draws
+                "{chains} chains of {draws} draws are more than {MOST_DRAWS} \
+                 in all, which memory is kept to; ask for fewer --draws"
             )));
         }
-        let (chains, draws, warmup) = (self.chains, self.draws, self.warmup);
         Ok(Effort { chains, draws, warmup })
+    }
+
+    /// The backend of that name. What `--draws` asks for is what it keeps,
+    /// of particles as of chains.
+    fn backend(&self, name: &str) -> Result<Box<dyn Backend>> {
+        let effort = self.effort()?;
+        let asked = self.draws.map(|draws| self.chains * draws);
+        let of = |particles| Smc { particles, ..Smc::default() };
+        Ok(match (name, asked) {
+            ("smc", Some(particles)) => Box::new(of(particles)),
+            ("bridge", Some(particles)) => {
+                let Bridge { draws, .. } = Bridge::of_effort(&effort);
+                Box::new(Bridge { sampler: of(particles), draws })
+            }
+            _ => backend(name, &effort)?,
+        })
     }
 }
 
 /// The most draws of all chains together: 32 MB for each parameter.
 const MOST_DRAWS: usize = 4_000_000;
-
-/// A folder that results can go to, looked at before the work and not after.
-fn folder(text: &str) -> std::result::Result<PathBuf, String> {
-    let path = PathBuf::from(text);
-    let there = path.ancestors().find(|path| path.exists());
-    match there {
-        Some(there) if !there.is_dir() => Err(format!(
-            "{} is a file; expected a folder, or a name that is free: give \
-             another, or move the file away",
-            there.display()
-        )),
-        _ => Ok(path),
-    }
-}
-
-/// Where results go.
-#[derive(Debug, Args)]
-struct Output {
-    /// Folder to write the results to
-    #[arg(long, value_name = "DIR", value_parser = folder)]
-    out: Option<PathBuf>,
-    /// Print one JSON document instead of the table
-    #[arg(long)]
-    json: bool,
-}
 
 /// The most of anything that is counted on the command line: beyond it a run
 /// would not end, or not fit in memory.
@@ -145,11 +141,20 @@ fn at_least_one(text: &str) -> Result<usize, String> {
     }
 }
 
-fn backend_name(text: &str) -> Result<String, String> {
-    match backend(text, &Effort::default()) {
-        Ok(_) => Ok(text.to_owned()),
-        Err(error) => Err(error.to_string()),
+/// The name of a backend that gives what it is wanted for; `lacks` says what
+/// others do not give.
+fn backend_giving(
+    name: &str,
+    lacks: &str,
+    enough: fn(Gives) -> bool,
+) -> Result<String, String> {
+    backend(name, &Effort::default()).map_err(|error| error.to_string())?;
+    let able = BACKENDS.iter().filter(|entry| enough(entry.gives));
+    let able: Vec<_> = able.map(|entry| entry.name).collect();
+    if able.contains(&name) {
+        return Ok(name.to_owned());
     }
+    Err(format!("it {lacks}; use {}", able.join(", ")))
 }
 
 /// Runs the command with the built-in laws.
@@ -173,24 +178,27 @@ pub fn main_with(laws: &Laws) -> ExitCode {
     };
     match cli.command.run(laws) {
         Ok(answer) => end(&answer),
-        Err(error) => {
-            complain(&error.to_string());
-            ExitCode::from(if error.is_input() { 2 } else { 1 })
-        }
+        Err(error) => refuse(&error),
     }
+}
+
+/// Tells an error; the exit code says whether the input is to be mended.
+fn refuse(error: &Error) -> ExitCode {
+    complain(&error.to_string());
+    ExitCode::from(if error.is_input() { 2 } else { 1 })
 }
 
 impl Command {
     fn run(&self, laws: &Laws) -> Result<Answer> {
         match self {
             Self::Calibrate(arguments) => arguments.run(laws),
-            Self::Compare(arguments) => arguments.run(laws).map(Answer::from),
+            Self::Compare(arguments) => arguments.run(laws),
             Self::Diagnose(arguments) => arguments.run(laws),
-            Self::Challenge(arguments) => arguments.run().map(Answer::from),
-            Self::Simulate(arguments) => arguments.run(laws).map(Answer::from),
+            Self::Challenge(arguments) => arguments.run(),
+            Self::Simulate(arguments) => arguments.run(laws),
             Self::New(arguments) => arguments.run().map(Answer::from),
-            Self::Bench(arguments) => arguments.run(laws).map(Answer::from),
-            Self::Reproduce(arguments) => arguments.run().map(Answer::from),
+            Self::Bench(arguments) => arguments.run(laws),
+            Self::Reproduce(arguments) => arguments.run(),
         }
     }
 }
@@ -198,12 +206,20 @@ impl Command {
 /// The exit code of a result that should not be used.
 const NOT_TO_BE_USED: u8 = 4;
 
-/// Prints an answer; the exit code says whether it may be used.
+/// Prints an answer; the exit code says whether it is all there, and may be
+/// used.
 fn end(answer: &Answer) -> ExitCode {
     let printed = print(&answer.text);
-    let Some(why) = &answer.refused else { return printed };
-    complain(&format!("--strict: not to be used: {why}"));
-    ExitCode::from(NOT_TO_BE_USED)
+    if let Some(why) = &answer.refused {
+        complain(&format!("--strict: not to be used: {why}"));
+    }
+    let failed = [printed.as_ref().err(), answer.failed.as_ref()];
+    let failed = failed.into_iter().flatten();
+    let failed = failed.fold(None, |_, error| Some(refuse(error)));
+    failed.unwrap_or(match answer.refused {
+        Some(_) => ExitCode::from(NOT_TO_BE_USED),
+        None => ExitCode::SUCCESS,
+    })
 }
 
 /// Lists the laws in the help of every `--friction`, a user's own included.
@@ -225,33 +241,23 @@ fn with_laws(command: clap::Command, laws: &Laws) -> clap::Command {
 }
 
 /// Prints a result. A reader that has gone away (`| head`) is no error.
-#[allow(clippy::print_stdout)]
-fn print(text: &str) -> ExitCode {
-    use std::io::Write;
+fn print(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => {
-            ExitCode::SUCCESS
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Error::system(format!(
+                "the answer could not be printed ({error}); expected a \
+                 standard output that takes it: send it somewhere else"
+            )))
         }
-        Err(_) => ExitCode::FAILURE,
+        _ => Ok(()),
     }
 }
 
-#[allow(clippy::print_stderr)]
+/// Says a line on the standard error stream.
 fn complain(message: &str) {
-    eprintln!("couloir: {message}");
-}
-
-/// Where the results are, at the end of what is printed: nothing where no
-/// folder was asked for.
-fn written(folder: Option<&Path>, files: &[&str]) -> String {
-    let Some(folder) = folder else { return String::new() };
-    let (head, files) =
-        (format!("Written to {}:", folder.display()), files.join(", "));
-    let both = head.chars().count() + 1 + files.chars().count();
-    let between = if both > width() { "\n  " } else { " " };
-    format!("\n{head}{between}{files}\n")
+    // Where that is closed or full, nobody is left to be told.
+    let _ = writeln!(std::io::stderr(), "couloir: {message}");
 }
 
 /// The width to print to: that of the terminal, 80 at the most.
@@ -262,10 +268,4 @@ fn width() -> usize {
 
 fn console_columns() -> Option<usize> {
     std::env::var("COLUMNS").ok()?.parse().ok()
-}
-
-/// Progress as a plain line.
-#[allow(clippy::print_stderr)]
-fn complain_plainly(what: &str) {
-    eprintln!("couloir: {what} ...");
 }

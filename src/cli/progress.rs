@@ -22,6 +22,11 @@ impl Told {
         }
     }
 
+    /// Whether a bar shows it.
+    pub(super) fn is_bar(&self) -> bool {
+        self.terminal
+    }
+
     fn with_bar(&self, work: impl FnOnce(&mut ProgressBar)) {
         if let Ok(mut bar) = self.bar.lock() {
             work(&mut bar);
@@ -38,7 +43,7 @@ impl Drop for Told {
 impl Progress for Told {
     fn begin(&self, what: &str, steps: Option<u64>) {
         if !self.terminal {
-            super::complain_plainly(what);
+            super::complain(&format!("{what} ..."));
             return;
         }
         self.with_bar(|bar| {

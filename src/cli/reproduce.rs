@@ -4,11 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::answer::Answer;
 use super::calibrate::{pretty, wrapped};
 use super::progress::Told;
-use super::{folder, width, written};
+use super::results::{Results, folder};
+use super::width;
 use crate::error::Result;
-use crate::io::write_all;
 use crate::report;
 use crate::reproduce::{page, reproduce, reproduction_json, words};
 
@@ -28,31 +29,29 @@ pub(super) struct Arguments {
     json: bool,
 }
 
+/// What it writes.
+const FILES: [&str; 4] =
+    ["reproduction.html", "reproduction.json", "m0.html", "m1.html"];
+
 impl Arguments {
-    pub(super) fn run(&self) -> Result<String> {
+    pub(super) fn run(&self) -> Result<Answer> {
+        let results = Results::ready(self.out.as_deref(), &FILES, &[])?;
         let told = Told::new();
         let found = reproduce(self.samples, self.seed, &told)?;
         drop(told);
         let json = pretty(&reproduction_json(&found));
-        if let Some(folder) = &self.out {
-            let [m0, m1] = &found.case.reports;
-            let files = [
-                ("reproduction.json", json.clone()),
-                ("reproduction.html", page(&found)),
-                ("m0.html", report::page(m0)),
-                ("m1.html", report::page(m1)),
-            ];
-            write_all(folder, &files)?;
-        }
+        let wrote = results.write(|| {
+            let [m0, m1] = found.case.reports.each_ref().map(report::page);
+            let texts = [page(&found), json.clone(), m0, m1];
+            Ok(FILES.into_iter().zip(texts).collect())
+        });
         if self.json {
-            return Ok(json);
+            return Ok(Answer::from(json).after(wrote));
         }
         let width = width();
         let mut text: String =
             words(&found).iter().map(|s| wrapped(s, width)).collect();
-        let files =
-            ["reproduction.html", "reproduction.json", "m0.html", "m1.html"];
-        text.push_str(&written(self.out.as_deref(), &files));
-        Ok(text)
+        text.push_str(&results.told(&wrote, &FILES, width));
+        Ok(Answer::from(text).after(wrote))
     }
 }

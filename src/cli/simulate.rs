@@ -3,10 +3,12 @@
 use clap::Args;
 use serde_json::json;
 
-use super::calibrate::pretty;
-use super::{Output, Subject};
+use super::Subject;
+use super::answer::Answer;
+use super::calibrate::{doubted, pretty};
+use super::results::Output;
+use super::study::Read;
 use crate::error::{Error, Result, Stop};
-use crate::io::write_all;
 use crate::model::Assembled;
 use crate::physics::State;
 use crate::physics::friction::Laws;
@@ -25,8 +27,10 @@ pub(super) struct Arguments {
 }
 
 impl Arguments {
-    pub(super) fn run(&self, laws: &Laws) -> Result<String> {
-        let model = self.subject.model(laws)?;
+    pub(super) fn run(&self, laws: &Laws) -> Result<Answer> {
+        let files = ["simulation.csv", "simulation.json"];
+        let results = self.output.ready(&files, self.subject.paths())?;
+        let Read { model, notes, warnings, .. } = self.subject.read(laws)?;
         let values = self.values(&model)?;
         let times = times(&model);
         let no_flow = |stop| match stop {
@@ -38,19 +42,22 @@ impl Arguments {
         let states = model.motion(&values, &times).map_err(no_flow)?;
         let rest = model.rest(&values).map_err(no_flow)?;
         let rest = rest.map(|r| (r.time.value(), r.distance.value()));
-        let document =
-            pretty(&document(&model, &values, &times, &states, rest));
-        if let Some(folder) = &self.output.out {
-            let files = [
-                ("simulation.csv", csv(&times, &states)),
-                ("simulation.json", document.clone()),
-            ];
-            write_all(folder, &files)?;
-        }
-        if self.output.json {
-            return Ok(document);
-        }
-        Ok(tell(&model, &values, &times, &states, rest))
+        let mut document = document(&model, &values, &times, &states, rest);
+        (document["notes"], document["warnings"]) =
+            (json!(notes), json!(warnings));
+        let document = pretty(&document);
+        let wrote = results.write(|| {
+            let texts = [csv(&times, &states), document.clone()];
+            Ok(files.into_iter().zip(texts).collect())
+        });
+        let text = match self.output.json {
+            true => document,
+            false => {
+                tell(&model, &values, &times, &states, rest)
+                    + &doubted(&notes, &warnings)
+            }
+        };
+        Ok(Answer::from(text).after(wrote))
     }
 
     /// The parameters' values: those set, the prior's middle for the rest.
@@ -178,7 +185,7 @@ fn tell(
     }
     if step > 1 {
         text.push_str(&format!(
-            "(every {step}th of {} rows; --out writes them all)\n",
+            "(one row in {step} of {}; --out writes them all)\n",
             times.len()
         ));
     }

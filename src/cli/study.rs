@@ -1,6 +1,7 @@
 //! From the command line to a model: the event, with what was changed of it.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use super::Subject;
 use crate::error::{Error, Result};
@@ -16,13 +17,20 @@ pub(super) struct Read {
     pub(super) model: Assembled,
     /// Whether its noise is to be inferred, and stands in for another.
     pub(super) infers_noise: bool,
-    /// How its recordings were thinned.
-    pub(super) thinned: Vec<String>,
+    /// What to know of how it was read, and how its recordings were thinned.
+    pub(super) notes: Vec<String>,
+    /// What could be true of it and hardly is.
+    pub(super) warnings: Vec<String>,
     /// The checksums of the files that were read, by their names.
     pub(super) inputs: BTreeMap<String, String>,
 }
 
 impl Subject {
+    /// What it is read from; nothing where the event is the embedded one.
+    pub(super) fn paths(&self) -> &[PathBuf] {
+        self.event.as_slice()
+    }
+
     /// The event, the embedded one where none was named.
     pub(super) fn load(&self, laws: &Laws) -> Result<EventFile> {
         self.load_told(laws).map(|(file, _)| file)
@@ -41,15 +49,10 @@ impl Subject {
         Ok((file, said))
     }
 
-    /// The model, with the laws that the command line may have changed.
-    pub(super) fn model(&self, laws: &Laws) -> Result<Assembled> {
-        Ok(self.read(laws)?.model)
-    }
-
     /// The same under a noise that was named.
-    pub(super) fn named(&self, laws: &Laws) -> Result<Assembled> {
+    pub(super) fn named(&self, laws: &Laws) -> Result<Read> {
         match self.read(laws)? {
-            Read { infers_noise: false, model, .. } => Ok(model),
+            read if !read.infers_noise => Ok(read),
             _ => Err(Error::input(
                 "the noise is to be inferred; expected one noise: name it, \
                  as in --noise \"ar(1)\"",
@@ -57,8 +60,7 @@ impl Subject {
         }
     }
 
-    /// The same, with whether its noise is to be inferred, and how it was
-    /// thinned.
+    /// The model, with the laws that the command line may have changed.
     pub(super) fn read(&self, laws: &Laws) -> Result<Read> {
         let (file, thinned) = self.load_told(laws)?;
         let own = self.friction.is_none() && self.noise.is_none();
@@ -70,12 +72,16 @@ impl Subject {
             None => file.infers_noise,
         };
         let priors = file.priors.clone();
+        let (mut notes, warnings) = said(&file);
+        let depth = NoDepth::of(&file);
         let model = assemble(file, laws, friction, noise, None)?;
+        notes.extend(depth.note(&model.friction(), laws));
+        notes.extend(thinned);
         if own {
             model.check_priors(&priors).map_err(|e| e.within(place))?;
         }
         let inputs = io::inputs(self.event.as_deref())?;
-        Ok(Read { model, infers_noise, thinned, inputs })
+        Ok(Read { model, infers_noise, notes, warnings, inputs })
     }
 
     /// The noise that the command line names; what stands in where it is to be
@@ -121,6 +127,39 @@ impl Subject {
         let correction =
             io::Correction { friction, noise, mechanisms, unused, recording };
         io::corrected(self.event.as_deref(), &correction)
+    }
+}
+
+/// What was noted and what was doubted when an event was read.
+pub(super) fn said(file: &EventFile) -> (Vec<String>, Vec<String>) {
+    (file.notes.clone(), file.warnings.clone())
+}
+
+/// Whether an event is without a flow depth.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NoDepth(bool);
+
+impl NoDepth {
+    pub(super) fn of(file: &EventFile) -> Self {
+        Self(!file.has_depth)
+    }
+
+    /// What a law makes of it, where it needs a depth.
+    pub(super) fn note(self, friction: &str, laws: &Laws) -> Option<String> {
+        let law = laws.parse(friction).ok()?;
+        if !self.0 || !law.has_depth() {
+            return None;
+        }
+        let fields = law.terms().iter().flat_map(|term| term.fields());
+        let xi = match fields.into_iter().any(|field| field.name == "xi") {
+            true => ", so that xi stands for the product xi h",
+            false => "",
+        };
+        Some(format!(
+            "The event gives no flow depth, which {friction} friction needs: \
+             1 m was taken{xi}; if it is known, write [flow] and depth in \
+             event.toml."
+        ))
     }
 }
 

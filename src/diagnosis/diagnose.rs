@@ -385,8 +385,9 @@ impl<P: Program> Subject<'_, P> {
         let names: Vec<&str> =
             self.events.iter().map(|event| event.name()).collect();
         let mut warnings = none.warnings.clone();
-        warnings.extend(fit.warnings.iter().cloned());
-        warnings.dedup();
+        let others =
+            fit.warnings.iter().filter(|w| !none.warnings.contains(w));
+        warnings.extend(others.cloned());
         Ok(Diagnosis {
             event: names.join(" + "),
             baseline: baseline(none, &old, self.events[0], options),

@@ -105,6 +105,21 @@ pub fn infer(
     Ok(inference)
 }
 
+/// What a backend gives beside what it cost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Gives {
+    /// Draws from the posterior.
+    pub draws: bool,
+    /// The evidence.
+    pub evidence: bool,
+}
+
+const DRAWS: Gives = Gives { draws: true, evidence: false };
+const BOTH: Gives = Gives { draws: true, evidence: true };
+const EVIDENCE: Gives = Gives { draws: false, evidence: true };
+const MODE: Gives = Gives { draws: false, evidence: false };
+
 /// A backend as the command names it: the name, what it is, and its making.
 #[derive(Clone, Copy)]
 pub struct Entry {
@@ -112,6 +127,8 @@ pub struct Entry {
     pub name: &'static str,
     /// What it does, in one line.
     pub about: &'static str,
+    /// Whether it gives draws, and whether it gives an evidence.
+    pub gives: Gives,
     /// Makes it of a given effort.
     pub make: fn(&Effort) -> Box<dyn Backend>,
 }
@@ -177,52 +194,62 @@ pub const BACKENDS: &[Entry] = &[
     Entry {
         name: "mh",
         about: "Metropolis-Hastings on the real line, adaptive",
+        gives: DRAWS,
         make: |effort| Box::new(MetropolisHastings::adaptive(effort)),
     },
     Entry {
         name: "random-walk",
         about: "Metropolis-Hastings of the paper, tuned covariance",
+        gives: DRAWS,
         make: |effort| Box::new(MetropolisHastings::random_walk(effort)),
     },
     #[cfg(feature = "nuts")]
     Entry {
         name: "nuts",
         about: "no-U-turn sampler on the real line, exact gradient",
+        gives: DRAWS,
         make: |effort| Box::new(Nuts::of_effort(effort)),
     },
     Entry {
         name: "smc",
         about: "sequential Monte Carlo, tempered, with evidence",
+        gives: BOTH,
         make: |effort| Box::new(Smc::of_effort(effort)),
     },
     Entry {
         name: "importance",
         about: "importance sampling by a Student-t mixture, with evidence",
+        gives: BOTH,
         make: |effort| Box::new(ImportanceSampling::of_effort(effort)),
     },
     Entry {
         name: "laplace-mixture",
         about: "importance sampling by Laplace's approximations of all modes",
+        gives: BOTH,
         make: |effort| Box::new(LaplaceMixture::of_effort(effort)),
     },
     Entry {
         name: "bridge",
         about: "bridge sampling on particles, with evidence",
+        gives: BOTH,
         make: |effort| Box::new(Bridge::on_particles(effort)),
     },
     Entry {
         name: "reciprocal",
         about: "evidence from chains as in the paper's appendix B",
+        gives: BOTH,
         make: |effort| Box::new(ReciprocalImportance::of_effort(effort)),
     },
     Entry {
         name: "quadrature",
         about: "exact evidence and marginals, up to four parameters",
+        gives: EVIDENCE,
         make: |_| Box::new(Quadrature::default()),
     },
     Entry {
         name: "map",
         about: "posterior mode by L-BFGS and Nelder-Mead",
+        gives: MODE,
         make: |_| Box::new(Map::default()),
     },
 ];

@@ -6,6 +6,7 @@ use std::path::Path;
 use csv::StringRecord;
 
 use super::lines::Lines;
+use super::plausible::{Values, is_mark};
 use super::words::{admissible, either, nearest, place, quoted};
 use crate::error::{Error, Result};
 use crate::observe::{Quantity, Series};
@@ -40,17 +41,19 @@ type Column = (&'static str, &'static str);
 /// finite number, a distance that does not increase, fewer than two points,
 /// more than [`MOST_ROWS`], or bytes that are no text.
 pub fn read_track(source: impl Read, path: &Path) -> Result<Track> {
+    track_of(source, path).map(|(track, _)| track)
+}
+
+/// The track, and the columns of the file that it has no use for.
+pub(super) fn track_of(
+    source: impl Read,
+    path: &Path,
+) -> Result<(Track, Vec<String>)> {
     let columns = [("x", "m"), ("z", "m")];
-    let check = |before: Option<&Row>, row: &Row| match before {
-        Some(before) if row[0] <= before[0] => Err(format!(
-            "x = {} follows x = {}; expected horizontal distances that \
-             increase: sort the points and drop repeated ones",
-            row[0], before[0]
-        )),
-        _ => Ok(()),
-    };
     let table = Table { path, columns: &columns, or: &[] };
-    let (_, rows) = table.read(source, "write \"x,z\"", check)?;
+    let mend =
+        "write \"x,z\" over horizontal distances [m] and elevations [m]";
+    let Rows { rows, unused, .. } = table.read(source, mend, check_point)?;
     if rows.len() < 2 {
         return Err(Error::input(format!(
             "{}: has one point only; expected at least two: add the end of \
@@ -60,7 +63,25 @@ pub fn read_track(source: impl Read, path: &Path) -> Result<Track> {
     }
     let column = |i: usize| rows.iter().map(|row| row[i]).collect::<Vec<_>>();
     Track::from_points(&column(0), &column(1))
+        .map(|track| (track, unused))
         .map_err(|error| error.within(place(path)))
+}
+
+fn check_point(before: Option<&Row>, row: &Row) -> Result<(), String> {
+    let [x, z, _] = *row;
+    if is_mark(z) {
+        return Err(format!(
+            "z = {z}; expected metres, and this is a mark for no elevation: \
+             drop the points where the terrain model has none"
+        ));
+    }
+    match before {
+        Some([last, ..]) if x <= *last => Err(format!(
+            "x = {x} follows x = {last}; expected horizontal distances that \
+             increase: sort the points and drop repeated ones"
+        )),
+        _ => Ok(()),
+    }
 }
 
 /// Reads a recording, `t,<quantity>` and, if known, `sigma`: time since the
@@ -70,13 +91,22 @@ pub fn read_track(source: impl Read, path: &Path) -> Result<Track> {
 /// # Errors
 /// An input error that names the line: another header or quantity, a cell
 /// that is no finite number, a time that is negative or does not increase, a
-/// negative standard error, no row, more than [`MOST_ROWS`], or bytes that
-/// are no text.
+/// value that no mass on a slope has, a negative standard error, no row, more
+/// than [`MOST_ROWS`], or bytes that are no text.
 pub fn read_recording(
     source: impl Read,
     quantity: Quantity,
     path: &Path,
 ) -> Result<Series> {
+    recording_of(source, quantity, path).map(|(series, _)| series)
+}
+
+/// The recording, and the columns of the file that it has no use for.
+pub(super) fn recording_of(
+    source: impl Read,
+    quantity: Quantity,
+    path: &Path,
+) -> Result<(Series, Vec<String>)> {
     let unit = quantity.unit();
     let columns = [("t", "s"), (quantity.name(), unit), ("sigma", unit)];
     let mend = format!(
@@ -84,16 +114,21 @@ pub fn read_recording(
          recording.quantity, which is \"{quantity}\""
     );
     let table = Table { path, columns: &columns, or: &[] };
-    let (given, rows) = table.read(source, &mend, check_values)?;
+    let Rows { given, rows, lines, unused } =
+        table.read(source, &mend, check_values)?;
     let column = |i: usize| rows.iter().map(|row| row[i]).collect::<Vec<_>>();
-    let series =
-        Series::new(quantity, column(0), column(1)).and_then(|series| {
-            match given.len() {
-                3 => series.with_standard_errors(column(2)),
-                _ => Ok(series),
-            }
-        });
-    series.map_err(|error| error.within(place(path)))
+    let (times, values) = (column(0), column(1));
+    let read =
+        Values { quantity, times: &times, values: &values, lines: &lines };
+    read.check().map_err(|(line, message)| table.at(line, message))?;
+    let series = Series::new(quantity, times, values).and_then(|series| {
+        match given.len() {
+            3 => series.with_standard_errors(column(2)),
+            _ => Ok(series),
+        }
+    });
+    let series = series.map_err(|error| error.within(place(path)))?;
+    Ok((series, unused))
 }
 
 fn check_values(before: Option<&Row>, row: &Row) -> Result<(), String> {
@@ -140,6 +175,14 @@ fn check_values(before: Option<&Row>, row: &Row) -> Result<(), String> {
 /// not more than 0, no row, more than [`MOST_ROWS`], or bytes that are no
 /// text.
 pub fn read_depth(source: impl Read, path: &Path) -> Result<Depth> {
+    depth_of(source, path).map(|(depth, _)| depth)
+}
+
+/// The depths, and the columns of the file that they have no use for.
+pub(super) fn depth_of(
+    source: impl Read,
+    path: &Path,
+) -> Result<(Depth, Vec<String>)> {
     let table = Table {
         path,
         columns: &[("x", "m"), ("depth", "m")],
@@ -147,14 +190,16 @@ pub fn read_depth(source: impl Read, path: &Path) -> Result<Depth> {
     };
     let mend = "write \"x,depth\" over horizontal distances [m], or \
                 \"t,depth\" over times [s], and depths [m]";
-    let (given, rows) = table.read(source, mend, check_depths)?;
+    let Rows { given, rows, unused, .. } =
+        table.read(source, mend, check_depths)?;
     let column = |i: usize| rows.iter().map(|row| row[i]).collect::<Vec<_>>();
     let rows = DepthRows::new(column(0), column(1))
         .map_err(|error| error.within(place(path)))?;
-    Ok(match given[0].0 {
+    let depth = match given[0].0 {
         "t" => Depth::During(rows),
         _ => Depth::Along(rows),
-    })
+    };
+    Ok((depth, unused))
 }
 
 fn check_depths(before: Option<&Row>, row: &Row) -> Result<(), String> {
@@ -185,14 +230,34 @@ struct Table<'t> {
     or: &'t [Column],
 }
 
+/// What a data file has.
+struct Rows<'t> {
+    /// The columns of the form that it has.
+    given: &'t [Column],
+    rows: Vec<Row>,
+    /// The lines of the rows.
+    lines: Vec<u64>,
+    /// The names of columns that nobody asked for.
+    unused: Vec<String>,
+}
+
+/// A header: the columns of a form, where each of them stands, and how many
+/// cells there are.
+struct Header<'t> {
+    given: &'t [Column],
+    at: Vec<usize>,
+    width: usize,
+    unused: Vec<String>,
+}
+
 impl<'t> Table<'t> {
-    /// The columns that the header has, and the rows.
+    /// The rows, in the order of the form's columns.
     fn read(
         &self,
         source: impl Read,
         mend: &str,
         check: impl Fn(Option<&Row>, &Row) -> Result<(), String>,
-    ) -> Result<(&'t [Column], Vec<Row>)> {
+    ) -> Result<Rows<'t>> {
         let mut reader = csv::ReaderBuilder::new()
             .has_headers(false)
             .flexible(true)
@@ -200,8 +265,8 @@ impl<'t> Table<'t> {
             .trim(csv::Trim::All)
             .from_reader(Lines::new(source));
         let mut record = StringRecord::new();
-        let mut rows: Vec<Row> = Vec::new();
-        let mut given: &'t [Column] = &[];
+        let (mut rows, mut lines) = (Vec::<Row>::new(), Vec::new());
+        let mut header: Option<Header<'t>> = None;
         while reader
             .read_record(&mut record)
             .map_err(|error| self.broken(error))?
@@ -209,42 +274,53 @@ impl<'t> Table<'t> {
             // Every line ends in one line feed: the reader stands behind it.
             let line = reader.position().line() - 1;
             let at = |message| self.at(line, message);
-            if given.is_empty() {
-                given = self.header(&record, mend).map_err(at)?;
+            let Some(header) = &header else {
+                header = Some(self.header(&record, mend).map_err(at)?);
                 continue;
-            }
+            };
             if rows.len() == MOST_ROWS {
                 return Err(at(format!(
                     "there are more than {MOST_ROWS} rows; expected at most \
                      as many: thin them out"
                 )));
             }
-            let row = self.row(&record, given).map_err(at)?;
+            let row = row(&record, header).map_err(at)?;
             check(rows.last(), &row).map_err(at)?;
             rows.push(row);
+            lines.push(line);
         }
-        if rows.is_empty() {
-            Err(self.empty(given.len()))
-        } else {
-            Ok((given, rows))
+        match header {
+            Some(Header { given, unused, .. }) if !rows.is_empty() => {
+                Ok(Rows { given, rows, lines, unused })
+            }
+            header => Err(self.empty(header.is_some())),
         }
     }
 
-    /// The columns of a good header.
+    /// A good header: it has the names of a form, in whatever order and beside
+    /// whatever others.
     fn header(
         &self,
         record: &StringRecord,
         mend: &str,
-    ) -> Result<&'t [Column], String> {
+    ) -> Result<Header<'t>, String> {
         let found: Vec<_> = record.iter().map(bare).collect();
         let names: Vec<_> = self.columns.iter().map(|c| c.0).collect();
-        if found.len() >= NEEDED && names.starts_with(&found) {
-            return Ok(&self.columns[..found.len()]);
+        let has = |form: &[Column]| {
+            form.len() >= NEEDED
+                && form[..NEEDED].iter().all(|c| found.contains(&c.0))
+        };
+        match (has(self.columns), has(self.or)) {
+            (true, true) => return Err(self.both(&found)),
+            (true, false) => {
+                let also = self.columns[NEEDED..].iter();
+                let also = also.take_while(|c| found.contains(&c.0)).count();
+                return header_of(&found, &self.columns[..NEEDED + also]);
+            }
+            (false, true) => return header_of(&found, self.or),
+            (false, false) => {}
         }
         let other: Vec<_> = self.or.iter().map(|c| c.0).collect();
-        if !other.is_empty() && found == other {
-            return Ok(self.or);
-        }
         let mut forms: Vec<_> =
             (NEEDED..=names.len()).map(|n| names[..n].join(",")).collect();
         if !other.is_empty() {
@@ -258,6 +334,16 @@ impl<'t> Table<'t> {
             either(&forms),
             self.header_mend(&found, &names, mend)
         ))
+    }
+
+    /// The error for a header that has the columns of both forms.
+    fn both(&self, found: &[&str]) -> String {
+        format!(
+            "the header is {}; expected either {:?} or {:?} in it: drop one",
+            quoted(&found.join(",")),
+            self.columns[0].0,
+            self.or[0].0
+        )
     }
 
     /// What to do about a header that is not as it should be.
@@ -283,40 +369,13 @@ impl<'t> Table<'t> {
                 units.join(", ")
             );
         }
-        if found.len() > names.len() && found.starts_with(names) {
-            return "drop the further columns".to_owned();
-        }
-        let strange = found.iter().find(|cell| !names.contains(cell));
-        match strange.and_then(|cell| nearest(cell, names)) {
+        let lacking: Vec<_> =
+            names.iter().copied().filter(|n| !found.contains(n)).collect();
+        let mut strange = found.iter().filter(|cell| !names.contains(cell));
+        match strange.find_map(|cell| nearest(cell, &lacking)) {
             Some(name) => format!("did you mean {name:?}? {mend}"),
             None => mend.to_owned(),
         }
-    }
-
-    fn row(
-        &self,
-        record: &StringRecord,
-        given: &[Column],
-    ) -> Result<Row, String> {
-        if record.len() != given.len() {
-            return Err(format!(
-                "has {}; expected {}, as in the header: separate \
-                 them by commas, and write decimals with a point",
-                match record.len() {
-                    1 => "1 cell".to_owned(),
-                    count => format!("{count} cells"),
-                },
-                given.len()
-            ));
-        }
-        let mut row = Row::default();
-        for ((cell, value), (name, unit)) in
-            record.iter().zip(&mut row).zip(given)
-        {
-            *value = number(bare(cell), unit)
-                .map_err(|what| format!("{name} {what}"))?;
-        }
-        Ok(row)
     }
 
     fn at(&self, line: u64, message: String) -> Error {
@@ -324,12 +383,12 @@ impl<'t> Table<'t> {
             .within(format_args!("{}:{line}", place(self.path)))
     }
 
-    fn empty(&self, given: usize) -> Error {
+    fn empty(&self, has_header: bool) -> Error {
         let names: Vec<_> = self.columns.iter().map(|c| c.0).collect();
         let header = names[..NEEDED].join(",");
-        let found = match given {
-            0 => "is empty",
-            _ => "has a header and no rows",
+        let found = match has_header {
+            false => "is empty",
+            true => "has a header and no rows",
         };
         Error::input(format!(
             "{}: {found}; expected the header {header:?} and rows of numbers \
@@ -353,6 +412,51 @@ impl<'t> Table<'t> {
             )),
         }
     }
+}
+
+/// Where the columns of a form stand in a header that has them.
+fn header_of<'t>(
+    found: &[&str],
+    given: &'t [Column],
+) -> Result<Header<'t>, String> {
+    let mut at = Vec::with_capacity(given.len());
+    for (name, _) in given {
+        let mut places = found.iter().enumerate().filter(|(_, c)| *c == name);
+        at.extend(places.next().map(|(i, _)| i));
+        if places.next().is_some() {
+            return Err(format!(
+                "the header is {}, which has {name:?} twice; expected each \
+                 column once: drop or rename one",
+                quoted(&found.join(","))
+            ));
+        }
+    }
+    let others = found.iter().enumerate().filter(|(i, _)| !at.contains(i));
+    let unused = others.map(|(_, name)| (*name).to_owned()).collect();
+    Ok(Header { given, at, width: found.len(), unused })
+}
+
+/// The numbers of a row, in the order of the form's columns.
+fn row(record: &StringRecord, header: &Header<'_>) -> Result<Row, String> {
+    if record.len() != header.width {
+        return Err(format!(
+            "has {}; expected {}, as in the header: separate them by commas, \
+             and write decimals with a point",
+            match record.len() {
+                1 => "1 cell".to_owned(),
+                count => format!("{count} cells"),
+            },
+            header.width
+        ));
+    }
+    let mut row = Row::default();
+    let columns = header.at.iter().zip(header.given);
+    for (value, (at, (name, unit))) in row.iter_mut().zip(columns) {
+        let cell = record.get(*at).unwrap_or_default();
+        *value = number(bare(cell), unit)
+            .map_err(|what| format!("{name} {what}"))?;
+    }
+    Ok(row)
 }
 
 /// A cell without the quotes that some programs put around every cell.
@@ -415,7 +519,8 @@ mod tests {
         assert_eq!(over("t").unwrap(), Depth::During(rows));
         for (text, part) in [
             ("s,depth\n0,1\n", "\"x,depth\" or \"t,depth\""),
-            ("x,depth,z\n0,1,2\n", "d.csv:1"),
+            ("x,t,depth\n0,0,1\n", "either \"x\" or \"t\" in it"),
+            ("x,depth,x\n0,1,2\n", "\"x\" twice"),
             ("x,depth\n0,1\n0,2\n", "d.csv:3: 0 follows 0"),
             ("x,depth\n0,1\n2,0\n", "d.csv:3: depth = 0; expected metres"),
             ("t,depth\n0,inf\n", "d.csv:2: depth is \"inf\""),
@@ -424,6 +529,21 @@ mod tests {
             let error = read(text).unwrap_err().to_string();
             assert!(error.contains(part), "{error}");
         }
+    }
+
+    #[test]
+    fn columns_are_found_by_their_names() {
+        let plain = speeds("t,velocity,sigma\n1,2,0.5\n2,3,0\n").unwrap();
+        for text in [
+            "t,velocity,sigma,note\n1,2,0.5,a\n2,3,0,\n",
+            "id,sigma,velocity,hdop,t\nx,0.5,2,1.1,1\ny,0,3,n/a,2\n",
+        ] {
+            assert_eq!(speeds(text).unwrap(), plain, "{text:?}");
+        }
+        let path = Path::new("track.csv");
+        let text = "z,name,x\n30,top,0\n0,end,40\n";
+        let (track, unused) = track_of(text.as_bytes(), path).unwrap();
+        assert_eq!((track.length(), unused), (50.0, vec!["name".to_owned()]));
     }
 
     #[test]

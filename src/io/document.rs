@@ -81,6 +81,11 @@ impl<'d> Section<'d> {
         self.entry(key).is_some_and(|entry| entry.value.is_table())
     }
 
+    /// Whether the key is there.
+    pub(super) fn has(&self, key: &str) -> bool {
+        self.entry(key).is_some()
+    }
+
     /// Whether the key is there and is a text.
     pub(super) fn is_text(&self, key: &str) -> bool {
         self.entry(key).is_some_and(|entry| entry.value.is_str())

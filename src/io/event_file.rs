@@ -6,8 +6,9 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::csv_file::{read_depth, read_recording, read_track};
+use super::csv_file::{depth_of, recording_of, track_of};
 use super::document::{Document, Section};
+use super::doubtful::{doubts, slope_in_radians, would_fit};
 use super::source;
 use super::words::{either, nearest, place, quoted};
 use crate::error::{Error, Result, Stop};
@@ -49,6 +50,12 @@ pub struct EventFile {
     pub mechanisms_at: String,
     /// The event.toml, as the user gave it.
     pub path: PathBuf,
+    /// Whether it gives a flow depth.
+    pub has_depth: bool,
+    /// What was read otherwise than may be expected, in sentences.
+    pub notes: Vec<String>,
+    /// What could be true and hardly is, each with the file.
+    pub warnings: Vec<String>,
 }
 
 /// Loads an event from its folder or its event.toml.
@@ -125,7 +132,12 @@ pub fn parse_event<R: Read>(
     ])?;
     let model = Model::read(&top, laws)?;
     let priors = read_priors(&top.section("priors")?)?;
-    let event = read_event(&top, &open)?;
+    let mut notes = Vec::new();
+    let event = read_event(&top, &open, &mut notes)?;
+    let slope = top.section("track")?.number("slope")?;
+    let warnings = doubts(&event, slope).into_iter();
+    let warnings = warnings.map(|w| format!("{}: {w}", place(path))).collect();
+    let has_depth = top.section("flow")?.has("depth");
     let noise = model.noise_of(&event)?;
     let mechanisms_at = model.section.spot("mechanisms");
     let Model { friction, noise: named, mechanisms, .. } = model;
@@ -139,14 +151,31 @@ pub fn parse_event<R: Read>(
         mechanisms,
         mechanisms_at,
         path,
+        has_depth,
+        notes,
+        warnings,
     })
 }
 
 type Open<'o, R> = &'o dyn Fn(&str) -> Result<(R, PathBuf)>;
 
-fn read_event<R: Read>(top: &Section, open: Open<R>) -> Result<Event> {
-    let depth = read_flow(&top.section("flow")?, open)?;
-    let still = at_rest(top, read_track_section(top, open)?, depth)?;
+/// A note on the columns of a file that are not used, where there are any.
+fn note_unused(notes: &mut Vec<String>, path: &Path, unused: &[String]) {
+    if !unused.is_empty() {
+        let names: Vec<_> = unused.iter().map(|name| quoted(name)).collect();
+        let (file, names) = (place(path), names.join(", "));
+        notes.push(format!("Not used of {file}: {names}."));
+    }
+}
+
+fn read_event<R: Read>(
+    top: &Section,
+    open: Open<R>,
+    notes: &mut Vec<String>,
+) -> Result<Event> {
+    let depth = read_flow(&top.section("flow")?, open, notes)?;
+    let track = read_track_section(top, open, notes)?;
+    let still = at_rest(top, track, depth)?;
     let recording = top.section("recording")?;
     recording.only(&["file", "quantity", "window"])?;
     let quantity = read_quantity(&recording)?;
@@ -156,12 +185,23 @@ fn read_event<R: Read>(top: &Section, open: Open<R>) -> Result<Event> {
     let (source, path) =
         open(file).map_err(|error| recording.about("file", error))?;
     let window = recording.number("window")?.unwrap_or(0.0);
-    let series = read_recording(source, quantity, &path)?
+    let (series, unused) = recording_of(source, quantity, &path)?;
+    note_unused(notes, &path, &unused);
+    let series = series
         .with_window(window)
         .map_err(|error| recording.about("window", error))?;
-    still
-        .with_recording(series)
-        .map_err(|error| recording.about("file", error.within(place(&path))))
+    let event = still.with_recording(series.clone()).map_err(|error| {
+        let too_long = error.to_string().contains("the track has only");
+        let fit = if too_long { would_fit(&still, &series) } else { "" };
+        let error = Error::input(format!("{error}{fit}"));
+        recording.about("file", error.within(place(&path)))
+    })?;
+    let track = top.section("track")?;
+    let slope = track.number("slope")?;
+    match slope.and_then(|slope| slope_in_radians(&event, slope)) {
+        Some(message) => Err(track.at("slope", message)),
+        None => Ok(event),
+    }
 }
 
 fn read_quantity(recording: &Section) -> Result<Quantity> {
@@ -185,7 +225,11 @@ fn read_quantity(recording: &Section) -> Result<Quantity> {
 }
 
 /// The track, from its file or as a constant slope.
-fn read_track_section<R: Read>(top: &Section, open: Open<R>) -> Result<Track> {
+fn read_track_section<R: Read>(
+    top: &Section,
+    open: Open<R>,
+    notes: &mut Vec<String>,
+) -> Result<Track> {
     let section = top.section("track")?;
     section.only(&["file", "slope", "length", "origin"])?;
     let origin = section.number("origin")?.unwrap_or(0.0);
@@ -195,7 +239,9 @@ fn read_track_section<R: Read>(top: &Section, open: Open<R>) -> Result<Track> {
         (Some(file), None, None) => {
             let (source, path) =
                 open(file).map_err(|error| section.about("file", error))?;
-            read_track(source, &path)?
+            let (track, unused) = track_of(source, &path)?;
+            note_unused(notes, &path, &unused);
+            track
         }
         (None, Some(slope), Some(length)) => incline(&section, slope, length)?,
         (Some(_), ..) => {
@@ -230,7 +276,11 @@ fn incline(section: &Section, slope: f64, length: f64) -> Result<Track> {
 }
 
 /// The flow depth, a number or a file of them.
-fn read_flow<R: Read>(flow: &Section, open: Open<R>) -> Result<Depth> {
+fn read_flow<R: Read>(
+    flow: &Section,
+    open: Open<R>,
+    notes: &mut Vec<String>,
+) -> Result<Depth> {
     flow.only(&["depth"])?;
     if flow.is_text("depth")
         && let Some(file) = flow.text("depth")?
@@ -247,7 +297,9 @@ fn read_flow<R: Read>(flow: &Section, open: Open<R>) -> Result<Depth> {
         }
         let (source, path) =
             open(file).map_err(|error| flow.about("depth", error))?;
-        return read_depth(source, &path);
+        let (depth, unused) = depth_of(source, &path)?;
+        note_unused(notes, &path, &unused);
+        return Ok(depth);
     }
     let depth = flow.number("depth")?.unwrap_or(1.0);
     if depth <= 0.0 {

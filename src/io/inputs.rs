@@ -23,18 +23,22 @@ pub(crate) fn inputs(
 ) -> Result<BTreeMap<String, String>> {
     let Some(path) = event else {
         return Ok(BTreeMap::from([
-            ("event.toml".to_owned(), sha256(embedded::EVENT)),
-            ("recording.csv".to_owned(), sha256(&embedded::recording())),
+            ("event.toml".to_owned(), sha256(embedded::EVENT.as_bytes())),
+            (
+                "recording.csv".to_owned(),
+                sha256(embedded::recording().as_bytes()),
+            ),
         ]));
     };
     let file = find(path)?;
     let text = read_text(&file, MOST_BYTES)?;
     let called = file.file_name().unwrap_or_default().to_string_lossy();
-    let mut all = BTreeMap::from([(called.into_owned(), sha256(&text))]);
+    let mut all =
+        BTreeMap::from([(called.into_owned(), sha256(text.as_bytes()))]);
     let folder = file.parent().unwrap_or(Path::new(""));
     for name in named(&text, &file)? {
         let data = read_text(&folder.join(&name), u64::MAX - 1)?;
-        all.insert(name, sha256(&data));
+        all.insert(name, sha256(data.as_bytes()));
     }
     Ok(all)
 }
@@ -49,9 +53,9 @@ fn named(text: &str, file: &Path) -> Result<Vec<String>> {
     Ok(FILES.into_iter().filter_map(of).collect())
 }
 
-/// The SHA-256 of a text, in hexadecimal digits.
-fn sha256(text: &str) -> String {
-    let digest = Sha256::digest(text.as_bytes());
+/// The SHA-256 of what is in a file, in hexadecimal digits.
+pub(super) fn sha256(bytes: &[u8]) -> String {
+    let digest = Sha256::digest(bytes);
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
@@ -64,7 +68,7 @@ mod tests {
         // FIPS 180-4, example of one block.
         let known = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61\
                      f20015ad";
-        assert_eq!(sha256("abc"), known);
+        assert_eq!(sha256(b"abc"), known);
     }
 
     #[test]

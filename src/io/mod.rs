@@ -7,11 +7,15 @@
 mod corrected;
 mod csv_file;
 mod document;
+mod doubtful;
 mod embedded;
 mod event_file;
 #[cfg(feature = "cli")]
 mod inputs;
 mod lines;
+mod plausible;
+#[cfg(feature = "cli")]
+mod run_folder;
 mod source;
 mod template;
 mod words;
@@ -23,5 +27,7 @@ pub use embedded::coastdown;
 pub use event_file::{EventFile, load, parse_event};
 #[cfg(feature = "cli")]
 pub(crate) use inputs::inputs;
+#[cfg(feature = "cli")]
+pub(crate) use run_folder::{prepare_run, write_run};
 pub use template::new_event;
 pub use write::write_all;

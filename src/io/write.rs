@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 
 /// A file under its temporary name, removed unless it gets its own.
 #[derive(Debug)]
-struct Draft {
+pub(super) struct Draft {
     temporary: PathBuf,
     target: PathBuf,
 }
@@ -34,16 +34,45 @@ pub fn write_all<N: AsRef<Path>>(
     folder: &Path,
     files: &[(N, String)],
 ) -> Result<()> {
-    let drafts: Vec<Draft> = files
-        .iter()
-        .map(|(name, text)| draft(folder.join(name), text))
-        .collect::<Result<_>>()?;
-    for Draft { temporary, target } in &drafts {
+    put_in_place(&drafts(folder, files)?)
+}
+
+/// The files under their temporary names, complete.
+pub(super) fn drafts<N: AsRef<Path>>(
+    folder: &Path,
+    files: &[(N, String)],
+) -> Result<Vec<Draft>> {
+    let draft = |(name, text): &(N, String)| draft(folder.join(name), text);
+    files.iter().map(draft).collect()
+}
+
+/// Gives them their own names.
+pub(super) fn put_in_place(drafts: &[Draft]) -> Result<()> {
+    for Draft { temporary, target } in drafts {
         fs::rename(temporary, target).map_err(|error| {
             failed(target, "the file could not be put in place", &error)
         })?;
     }
     Ok(())
+}
+
+/// Finds out whether a folder can be made and written, by doing so; nothing of
+/// it stays.
+#[cfg(feature = "cli")]
+pub(super) fn try_folder(folder: &Path) -> Result<()> {
+    let new: Vec<&Path> =
+        folder.ancestors().take_while(|path| !path.exists()).collect();
+    let tried = draft(folder.join("couloir"), "").map(drop);
+    for made in new {
+        // What could not be made is not there to be removed.
+        let _ = fs::remove_dir(made);
+    }
+    tried.map_err(|error| {
+        Error::system(format!(
+            "{error}; results could not be written there: give another \
+             folder, or change its permissions"
+        ))
+    })
 }
 
 fn draft(target: PathBuf, text: &str) -> Result<Draft> {

@@ -54,6 +54,7 @@ pub(crate) fn p_value(p: f64) -> String {
     match p {
         p if !p.is_finite() => NONE.to_owned(),
         p if p < 0.001 => "< 0.001".to_owned(),
+        p if p < 0.01 => "< 0.01".to_owned(),
         p => format!("{p:.2}"),
     }
 }
@@ -83,6 +84,19 @@ pub(crate) fn per_cent(share: f64) -> String {
         return NONE.to_owned();
     }
     format!("{:.0} %", 100.0 * share)
+}
+
+/// The 90 % interval of a share of which `hits` of `of` are known: Wilson's
+/// (1927), which stays between 0 and 1.
+#[cfg(feature = "cli")]
+pub(crate) fn share_interval(hits: usize, of: usize) -> (f64, f64) {
+    const Z: f64 = 1.645;
+    let (n, share) = (of as f64, hits as f64 / of as f64);
+    let middle = share + Z * Z / (2.0 * n);
+    let spread = share * (1.0 - share) / n + (Z / (2.0 * n)).powi(2);
+    let (half, whole) = (Z * spread.sqrt(), 1.0 + Z * Z / n);
+    let end = |x: f64| (x / whole).clamp(0.0, 1.0);
+    (end(middle - half), end(middle + half))
 }
 
 /// Round values between two bounds, some `count` of them and two if the
@@ -144,6 +158,24 @@ mod tests {
         assert_eq!(short(41.3, 3), "41.3");
         assert_eq!(short(100.0, 3), "100");
         assert_eq!(significant(3.2e-9, 2), "3.2e-9");
+    }
+
+    #[test]
+    fn a_small_p_is_never_zero() {
+        assert_eq!(p_value(0.0004), "< 0.001");
+        assert_eq!(p_value(0.004), "< 0.01");
+        assert_eq!(p_value(0.014), "0.01");
+    }
+
+    #[cfg(feature = "cli")]
+    #[test]
+    fn a_share_has_an_interval_between_0_and_1() {
+        // Newcombe 1998, table I, method 3, by its formula at 90 %.
+        let (low, high) = share_interval(81, 263);
+        assert!((low - 0.263).abs() < 1e-3 && (high - 0.357).abs() < 1e-3);
+        assert_eq!(share_interval(4, 4).1, 1.0);
+        assert_eq!(share_interval(0, 4).0, 0.0);
+        assert!(share_interval(4, 4).0 > 0.5);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use maud::{Markup, html};
 
 use super::{ModelStudy, PriorStudy, Reading, Reproduction, Which, error_of};
 use crate::draws::median;
+use crate::report::digits::share_interval;
 use crate::report::svg::{
     Boxes, Curves, Histogram, Picture, box_plots, curves, histograms,
 };
@@ -20,10 +21,11 @@ fn per_cent(count: usize, samples: usize) -> f64 {
     100.0 * count as f64 / samples as f64
 }
 
-/// A share of the series with its Monte Carlo standard error.
+/// A share of the series in per cent, with its 90 % interval.
 fn share(count: usize, samples: usize) -> String {
-    let se = error_of(count, samples);
-    format!("{:.0} ± {se:.0}", per_cent(count, samples))
+    let (low, high) = share_interval(count, samples);
+    let [low, high] = [low, high].map(|end| 100.0 * end);
+    format!("{:.0} ({low:.0} to {high:.0})", per_cent(count, samples))
 }
 
 fn above(values: &[f64], threshold: f64) -> usize {
@@ -236,8 +238,8 @@ fn coverage_table(found: &Reproduction) -> Markup {
                 @for which in Which::BOTH { (coverage_rows(found, which)) }
             }
         } }
-        p.note { "Per cent of the series, with the Monte Carlo standard \
-                  error; exact: the intervals by quadrature, of the same \
+        p.note { "Per cent of the series, with a 90 % interval by the \
+                  number of series; exact: the intervals by quadrature, of the same \
                   series. The truth is that of Table 2, for sigma2 the \
                   variance of the innovations under both models." }
     }

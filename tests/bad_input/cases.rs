@@ -280,6 +280,15 @@ const GROUND: &[Edit] = &[
         &["event.toml:4: track.slope: the slope is 120", "from -90"],
     ),
     (
+        "slope-in-radians",
+        "file = \"track.csv\"",
+        "slope = 0.44\nlength = 300",
+        &[
+            "event.toml:4: track.slope is 0.44; expected degrees",
+            "are these radians? write slope = 25.2",
+        ],
+    ),
+    (
         "length-negative",
         "file = \"track.csv\"",
         "slope = 30\nlength = -1",
@@ -523,6 +532,7 @@ const MODEL: &[Edit] = &[
         &[
             "event.toml:19: model.friction: friction \"voelmy\" is not known",
             "coulomb",
+            "; did you mean \"voellmy\"?",
         ],
     ),
     (
@@ -681,9 +691,14 @@ const TRACKS: &[(&str, &str, Expected)] = &[
         ],
     ),
     (
-        "track-third-column",
-        "x,z,y\n0,300,0\n400,0,0\n",
-        &["track.csv:1: the header is \"x,z,y\"", "drop the further columns"],
+        "track-column-twice",
+        "x,z,y,z\n0,300,0,1\n400,0,0,1\n",
+        &["track.csv:1: the header is \"x,z,y,z\"", "has \"z\" twice"],
+    ),
+    (
+        "track-no-elevation",
+        "x,z\n0,300\n200,-9999\n400,0\n",
+        &["track.csv:3: z = -9999; expected metres", "drop the points"],
     ),
     (
         "track-semicolons",
@@ -778,20 +793,63 @@ const RECORDINGS: &[(&str, &str, Expected)] = &[
         ],
     ),
     (
-        "recording-columns-swapped",
-        "velocity,t\n2.5,1\n",
+        "recording-extra-column-short-row",
+        "t,note,velocity\n1,a,2.5\n2,5\n",
+        &["recording.csv:3: has 2 cells; expected 3, as in the header"],
+    ),
+    (
+        "recording-extra-column-misspelt",
+        "hdop,t,velocty\n1,1,2.5\n",
+        &["recording.csv:1: the header is", "did you mean \"velocity\"?"],
+    ),
+    (
+        "recording-mark",
+        "t,velocity\n1,2.5\n2,-9999\n3,7\n",
         &[
-            "recording.csv:1: the header is \"velocity,t\"",
-            "write \"t,velocity\"",
+            "recording.csv:3: velocity = -9999; expected a measured value",
+            "drop the rows where nothing was measured",
         ],
     ),
     (
-        "recording-extra-column",
-        "t,velocity,sigma,note\n1,2.5,1,a\n",
+        "recording-turned",
+        "t,velocity\n1,-2.5\n2,-5\n3,-7\n",
         &[
-            "recording.csv:1: the header is \"t,velocity,sigma,note\"",
-            "drop the further columns",
+            "recording.csv:2: velocity = -2.5; expected m/s down the track",
+            "change the sign of all",
         ],
+    ),
+    (
+        "recording-one-far-below",
+        "t,velocity\n1,2.5\n2,-8\n3,7\n",
+        &["recording.csv:3: velocity = -8", "drop the rows"],
+    ),
+    (
+        "recording-in-km-h",
+        "t,velocity\n1,90\n2,180\n3,200\n",
+        &["recording.csv:3: velocity = 180", "km/h? divide all by 3.6"],
+    ),
+    (
+        "recording-in-milliseconds",
+        "t,velocity\n1000,2.5\n2000,5\n3000,7\n4000,9\n",
+        &["recording.csv:5: t = 4000; expected seconds", "divide all by 1000"],
+    ),
+    (
+        "recording-in-few-milliseconds",
+        "t,velocity\n100,2.5\n200,5\n300,7\n",
+        &[
+            "event.toml:14: recording.file: ",
+            "or are the times milliseconds? divide them by 1000",
+        ],
+    ),
+    (
+        "recording-of-the-day",
+        "t,velocity\n43201,2.5\n43202,5\n43203,7\n",
+        &["recording.csv:2: t = 43201", "seconds of the day", "subtract"],
+    ),
+    (
+        "recording-never-moves",
+        "t,velocity\n1,0\n2,0\n3,0\n",
+        &["recording.csv:2: velocity = 0; expected a mass that moves"],
     ),
     (
         "recording-header-escapes",

@@ -141,13 +141,38 @@ impl Laws {
     fn find(&self, name: &str) -> Result<&'static dyn Law> {
         self.iter().find(|law| law.name() == name).ok_or_else(|| {
             let known: Vec<_> = self.iter().map(|law| law.name()).collect();
+            let mend = nearest(name, &known)
+                .map(|known| format!("; did you mean {known:?}?"));
             Error::input(format!(
                 "friction {name:?} is not known; expected none, or one or a \
-                 sum (\"a + b\") of {}",
-                known.join(", ")
+                 sum (\"a + b\") of {}{}",
+                known.join(", "),
+                mend.unwrap_or_default()
             ))
         })
     }
+}
+
+/// The name that a misspelt one is closest to, if any is close.
+fn nearest<'n>(found: &str, known: &[&'n str]) -> Option<&'n str> {
+    let found = found.to_lowercase();
+    let near = known.iter().map(|name| (edits(&found, name), *name)).min();
+    near.filter(|(edits, name)| *edits <= 1 + name.len() / 4).map(|n| n.1)
+}
+
+/// How many letters to insert, delete or change between two words
+/// (Levenshtein's distance).
+fn edits(from: &str, to: &str) -> usize {
+    let mut row: Vec<usize> = (0..=to.chars().count()).collect();
+    for (i, a) in from.chars().enumerate() {
+        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
+        for (j, b) in to.chars().enumerate() {
+            let changed = diagonal + usize::from(a != b);
+            diagonal = row[j + 1];
+            row[j + 1] = changed.min(diagonal + 1).min(row[j] + 1);
+        }
+    }
+    row[to.chars().count()]
 }
 
 /// A sum of named laws.
@@ -164,6 +189,21 @@ impl LawSum {
     /// Its terms, in the order written.
     pub fn terms(&self) -> &[&'static dyn Law] {
         &self.0
+    }
+
+    /// Whether what it resists hangs on the flow depth.
+    pub fn has_depth(&self) -> bool {
+        let values = vec![Real::<Plain>::new(1.0); self.dimension()];
+        let law = self.with(&values);
+        let at = |depth| {
+            let (distance, curvature) = (1.0, 0.0);
+            let site =
+                Site { distance, pull: 5.0, load: 8.0, curvature, depth };
+            let r = law.rate(&site, Real::new(10.0));
+            [r.mu, r.pressed, r.constant, r.linear, r.quadratic, r.growth]
+                .map(|rate| rate.value())
+        };
+        at(1.0) != at(2.0)
     }
 
     /// How many values it takes.
