@@ -271,6 +271,7 @@ impl<P: Program> Subject<'_, P> {
             own: &own,
             judged: &judged,
             beforehand,
+            elsewhere: table.beside(row),
             seed,
         };
         let chosen = choice.choose(verdict)?;

@@ -6,6 +6,7 @@ use crate::diagnosis::decide::chosen::Chosen;
 use crate::diagnosis::decide::judge::Beforehand;
 use crate::diagnosis::decide::stepwise::{RISE, Stepwise};
 use crate::diagnosis::evidence::attribute::Attribution;
+use crate::diagnosis::evidence::noises::Noisy;
 use crate::diagnosis::findings::{Judged, Verdict};
 use crate::diagnosis::hypothesis::UNKNOWN;
 use crate::error::Result;
@@ -26,6 +27,8 @@ pub(crate) struct Choice<'a, P> {
     pub(crate) own: &'a [Judged],
     pub(crate) judged: &'a [Judged],
     pub(crate) beforehand: Beforehand<'a>,
+    /// The model under the other noises that are kept.
+    pub(crate) elsewhere: Vec<&'a Noisy<'a, P>>,
     pub(crate) seed: Seed,
 }
 
@@ -54,6 +57,7 @@ impl<P: Program> Choice<'_, P> {
             found: self.found,
             beforehand: &self.beforehand,
             candidates,
+            elsewhere: &self.elsewhere,
             seed: self.seed,
         };
         stepwise.from(first).map(Some)

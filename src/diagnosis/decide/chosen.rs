@@ -16,13 +16,15 @@ pub(crate) struct Chosen {
     /// Which of the catalogue.
     pub(crate) which: Vec<usize>,
     pub(crate) fit: Fit,
+    /// By how much more, in ln, it is worth where other noises count too.
+    pub(crate) gain: f64,
     /// What would do nearly as well in its place, with ln of its evidence.
     pub(crate) rivals: Vec<(Vec<usize>, f64)>,
 }
 
 impl Chosen {
     pub(crate) fn new(which: Vec<usize>, fit: Fit) -> Self {
-        Self { which, fit, rivals: Vec::new() }
+        Self { which, fit, gain: 0.0, rivals: Vec::new() }
     }
 
     /// What would do nearly as well, most evidence first.

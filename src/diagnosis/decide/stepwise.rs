@@ -16,8 +16,10 @@ use rayon::prelude::*;
 use crate::diagnosis::decide::chosen::Chosen;
 use crate::diagnosis::decide::judge::Beforehand;
 use crate::diagnosis::evidence::attribute::Attribution;
+use crate::diagnosis::evidence::carried::gain;
 use crate::diagnosis::evidence::combination::{Combination, Known, Pursued};
-use crate::diagnosis::evidence::fit::Fit;
+use crate::diagnosis::evidence::noises::{NEAR, Noisy};
+use crate::draws::log_sum_exp;
 use crate::error::Result;
 use crate::infer::Precision;
 use crate::mechanism::Mechanism;
@@ -41,6 +43,8 @@ pub(crate) struct Stepwise<'a, P> {
     pub(crate) beforehand: &'a Beforehand<'a>,
     /// Which of them may be terms, most probable first.
     pub(crate) candidates: Vec<usize>,
+    /// The model under the other noises that are kept.
+    pub(crate) elsewhere: &'a [&'a Noisy<'a, P>],
     pub(crate) seed: Seed,
 }
 
@@ -104,10 +108,13 @@ impl<'a, P: Program> Stepwise<'a, P> {
                 tried.insert(sorted(step.terms(&chosen.which)))
             });
             others.extend(self.fits(chosen, &steps)?);
-            let Some(next) = self.better(&others, chosen) else { break };
+            let known: Vec<&Chosen> =
+                others.iter().map(|other| &other.chosen).collect();
+            let Some(next) = self.better(&known, chosen) else { break };
             let next = others.swap_remove(next);
             others.push(std::mem::replace(&mut best, next));
         }
+        self.count_noises(&mut best, &mut others)?;
         let Tried { mut chosen, found } = best;
         if let Some(found) = found {
             chosen.fit = found.fit(self.program, Precision::Sharp)?;
@@ -129,7 +136,7 @@ impl<'a, P: Program> Stepwise<'a, P> {
         let looks = steps.par_iter().map(|step| self.look(chosen, step));
         let mut left = looks.collect::<Result<Vec<Look<'_>>>>()?;
         left.sort_by(|a, b| b.promise().total_cmp(&a.promise()));
-        let mut least = self.worth_of(&chosen.which, &chosen.fit);
+        let mut least = self.worth_of(chosen);
         let near = RISE * LN_10;
         let mut found: Vec<Tried<'a>> = Vec::new();
         loop {
@@ -146,8 +153,7 @@ impl<'a, P: Program> Stepwise<'a, P> {
             let fits = left.into_par_iter().map(|l| self.tried(l, hurdle));
             let fits = fits.collect::<Result<Vec<_>>>()?;
             for one in fits.into_iter().flatten() {
-                let Chosen { which, fit, .. } = &one.chosen;
-                least = least.max(self.worth_of(which, fit));
+                least = least.max(self.worth_of(&one.chosen));
                 found.push(one);
             }
             left = rest;
@@ -210,11 +216,50 @@ impl<'a, P: Program> Stepwise<'a, P> {
         Combination::extended(self.program, &known, added, seed)
     }
 
+    /// Exchanges the best for what is worth more where all noises that are
+    /// kept count: what is far below the best under one noise is far below it
+    /// under any that is kept.
+    fn count_noises(
+        &self,
+        best: &mut Tried<'a>,
+        others: &mut [Tried<'a>],
+    ) -> Result<()> {
+        let least = self.worth_of(&best.chosen) - NEAR * LN_10;
+        let near =
+            |other: &&mut Tried<'a>| self.worth_of(&other.chosen) > least;
+        let near = others.iter_mut().filter(near);
+        let mut near: Vec<&mut Tried<'a>> = near.collect();
+        if near.is_empty() || self.elsewhere.is_empty() {
+            return Ok(());
+        }
+        near.push(best);
+        near.par_iter_mut().try_for_each(|one| {
+            one.chosen.gain = self.gain(&one.chosen)?;
+            Ok(())
+        })?;
+        let chosen: Vec<&Chosen> = others.iter().map(|o| &o.chosen).collect();
+        if let Some(next) = self.better(&chosen, &best.chosen) {
+            std::mem::swap(best, &mut others[next]);
+        }
+        Ok(())
+    }
+
+    /// By how much more, in ln, the evidence of terms is, summed over noises.
+    fn gain(&self, chosen: &Chosen) -> Result<f64> {
+        let mechanisms = chosen.mechanisms(self.all);
+        let from = (self.program, &chosen.fit);
+        let mut gains = vec![0.0];
+        for noisy in self.elsewhere {
+            let to = (noisy.program(), noisy.own());
+            gains.push(gain(from, to, &mechanisms, self.seed.child(1))?);
+        }
+        Ok(log_sum_exp(gains.into_iter()))
+    }
+
     /// Which of others is worth most, where that is more than what was chosen
     /// is worth by more than their errors.
-    fn better(&self, others: &[Tried<'_>], chosen: &Chosen) -> Option<usize> {
-        let worth = |c: &Chosen| self.worth_of(&c.which, &c.fit);
-        let others: Vec<&Chosen> = others.iter().map(|o| &o.chosen).collect();
+    fn better(&self, others: &[&Chosen], chosen: &Chosen) -> Option<usize> {
+        let worth = |c: &Chosen| self.worth_of(c);
         let most = |a: &usize, b: &usize| {
             worth(others[*a]).total_cmp(&worth(others[*b]))
         };
@@ -231,7 +276,7 @@ impl<'a, P: Program> Stepwise<'a, P> {
     ) -> Vec<(Vec<usize>, f64)> {
         let others = others.into_iter().map(|other| other.chosen);
         let mut others: Vec<Chosen> = others.collect();
-        let worth = |c: &Chosen| self.worth_of(&c.which, &c.fit);
+        let worth = |c: &Chosen| self.worth_of(c);
         let near = worth(chosen) - RISE * LN_10;
         others.retain(|other| {
             other.which.len() == chosen.which.len() && worth(other) > near
@@ -242,8 +287,9 @@ impl<'a, P: Program> Stepwise<'a, P> {
     }
 
     /// ln of the evidence of terms, less what these cost.
-    fn worth_of(&self, which: &[usize], fit: &Fit) -> f64 {
-        fit.log_evidence - self.price(which)
+    fn worth_of(&self, chosen: &Chosen) -> f64 {
+        let Chosen { which, fit, gain, .. } = chosen;
+        fit.log_evidence + gain - self.price(which)
     }
 
     /// What terms cost, in ln: how much less likely beforehand they are than

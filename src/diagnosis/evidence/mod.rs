@@ -2,6 +2,7 @@
 
 pub(crate) mod apart;
 pub(crate) mod attribute;
+pub(crate) mod carried;
 pub(crate) mod combination;
 mod edges;
 pub(crate) mod fit;

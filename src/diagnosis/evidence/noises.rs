@@ -27,7 +27,7 @@ use crate::seed::Seed;
 const MEMORIES: [&str; 5] =
     ["white", "ou", "ou + white", "matern32 + white", "matern32 + ou"];
 /// In log10: how far below the best a noise may be that is kept.
-const NEAR: f64 = 2.5;
+pub(crate) const NEAR: f64 = 2.5;
 /// In ln: by how much a noise must have more evidence than simpler ones.
 const MORE: f64 = 1.0;
 /// From how many draws of the prior climbs start before it is known whether a

@@ -1,6 +1,9 @@
 //! The two-way table: every mechanism under every noise that is kept.
 
-use super::attribute::{Attribution, Care, attribute_beside, promises};
+use rayon::prelude::*;
+
+use super::attribute::{Attribution, Care, attribute_beside};
+use super::carried::gain;
 use super::noises::{Noises, Noisy};
 use crate::error::{Error, Result};
 use crate::infer::Progress;
@@ -69,6 +72,13 @@ impl<'a, P: Program> Table<'a, P> {
         self.rows.iter().position(|row| row.noisy.is_named())
     }
 
+    /// The model under the noises of all other rows.
+    pub(crate) fn beside(&self, row: usize) -> Vec<&Noisy<'a, P>> {
+        let rows = self.rows.iter().enumerate();
+        let others = rows.filter(|(i, _)| *i != row);
+        others.map(|(_, other)| &other.noisy).collect()
+    }
+
     /// Whether the named noise is kept.
     pub(crate) fn keeps_named(&self) -> bool {
         self.dropped.is_none()
@@ -125,9 +135,13 @@ impl<'a, P: Program> Row<'a, P> {
         seed: Seed,
     ) -> Result<Self> {
         let found = first.found()?;
-        let from = (first.noisy.program(), found);
+        let from = first.noisy.program();
         let to = (noisy.program(), noisy.own());
-        let gains = promises(from, to, catalogue, seed)?.into_iter();
+        let fits = catalogue.par_iter().zip(&found.candidates);
+        let gains = fits.map(|(mechanism, fit)| {
+            gain((from, fit), to, &[mechanism.as_ref()], seed)
+        });
+        let gains = gains.collect::<Result<Vec<f64>>>()?;
         let known = first.candidates.iter().zip(gains);
         let candidates = known.map(|(known, gain)| known + gain).collect();
         let open = first.open + noisy.open.log - first.noisy.open.log;

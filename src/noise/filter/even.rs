@@ -61,6 +61,7 @@ impl<K: Kind, const N: usize> Even<K, N> {
     }
 
     /// What a value tells of how well the next will be known.
+    #[expect(clippy::needless_range_loop, reason = "two entries at once")]
     #[inline(always)]
     fn reflect(&mut self, precision: Real<K>) {
         let seen = sum(&self.values, &self.backward);

@@ -134,6 +134,7 @@ impl<K: Kind, const N: usize> Follows<K> for Kalman<'_, '_, K, N> {
         Expected { mean, variance: next.variance }
     }
 
+    #[expect(clippy::needless_range_loop, reason = "two entries at once")]
     #[inline]
     fn learn(&mut self, error: Real<K>, precision: Real<K>) {
         let Some(Foreseen { across, .. }) = self.last else { return };
