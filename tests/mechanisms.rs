@@ -34,6 +34,7 @@ fn extent() -> Extent {
         carried: true,
         bends: true,
         averages: true,
+        rate_unit: "m/s2",
     }
 }
 
@@ -68,7 +69,7 @@ const PRIORS: &[(&str, &[&str])] = &[
     ("release-position", &["shift m Normal(0, 20)"]),
     ("clock-offset", &["ahead s Normal(0, 1)"]),
     ("velocity-scale", &["excess 1 Normal(0, 0.1)"]),
-    ("sensor-drift", &["drift value/s Normal(0, 0.125)"]),
+    ("sensor-drift", &["drift m/s2 Normal(0, 0.125)"]),
     (
         // ln 5: half the upper-quartile speed.
         "velocity-weakening",

@@ -25,6 +25,8 @@ pub struct Extent {
     pub bends: bool,
     /// Whether a mean over a window can be formed of what is recorded.
     pub averages: bool,
+    /// The unit of how fast what is recorded changes.
+    pub rate_unit: &'static str,
 }
 
 /// Of the upper quartile of the speeds, what a released mass starts with at
@@ -45,6 +47,7 @@ impl Extent {
         carried: true,
         bends: true,
         averages: true,
+        rate_unit: "m/s2",
     };
 
     /// Whether the mass is hardly under way at t = 0: one that slides already

@@ -23,6 +23,7 @@ impl Event {
         }
         .max(1e-3);
         extent.bends = self.bends_until(extent.run);
+        extent.rate_unit = series.quantity().rate_unit();
         extent
     }
 
@@ -53,6 +54,7 @@ impl Event {
             carried: pieces.iter().any(|piece| piece.load > 1e-6),
             bends: false,
             averages,
+            rate_unit: Quantity::Velocity.rate_unit(),
         }
     }
 
@@ -88,6 +90,10 @@ impl Extent {
             carried: a.carried || b.carried,
             bends: a.bends || b.bends,
             averages: a.averages || b.averages,
+            rate_unit: match a.rate_unit == b.rate_unit {
+                true => a.rate_unit,
+                false => "values/s",
+            },
         });
         let speed = upper_quartile(speeds);
         match all {
@@ -104,6 +110,7 @@ impl Extent {
                 carried: false,
                 bends: false,
                 averages: false,
+                rate_unit: Quantity::Velocity.rate_unit(),
             },
         }
     }

@@ -39,6 +39,15 @@ impl Quantity {
         }
     }
 
+    /// The unit of how fast it changes.
+    pub fn rate_unit(self) -> &'static str {
+        match self {
+            Self::Velocity => "m/s2",
+            Self::Position => "m/s",
+            Self::Acceleration => "m/s3",
+        }
+    }
+
     /// The unit of its square.
     pub fn squared_unit(self) -> &'static str {
         match self {

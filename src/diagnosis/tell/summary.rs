@@ -45,11 +45,10 @@ fn mechanisms(d: &Diagnosis, width: usize) -> Vec<String> {
     if shown.is_empty() {
         return Vec::new();
     }
+    let room = width.saturating_sub(NAME + 21);
     let line = |name: &str, p: &str, bf: &str, size: &str| {
-        let start = format!("{name:<NAME$}  {p:>7}  {bf:>8}");
-        let room = width.saturating_sub(start.chars().count() + 2);
-        let size = if room < 12 { "" } else { &shorten(size, room) };
-        format!("{start}  {size}")
+        let size = if room < 12 { "" } else { size };
+        format!("{name:<NAME$}  {p:>7}  {bf:>8}  {size}")
     };
     let head = line("mechanism", "prob.", "log10 BF", "its size (90 %)");
     let mut lines = vec![String::new(), head, "─".repeat(width)];
@@ -58,7 +57,7 @@ fn mechanisms(d: &Diagnosis, width: usize) -> Vec<String> {
             &shorten(&plain(&m.name), NAME),
             &probability(m.probability),
             &log10(m.log10_bayes_factor),
-            &size(m),
+            &fitting(&sizes(m), room),
         )
     }));
     let rest = &d.mechanisms[shown.len()..];
@@ -81,13 +80,21 @@ fn noises(d: &Diagnosis, width: usize) -> Vec<String> {
     lines
 }
 
-/// The main parameter with its interval.
-pub(crate) fn size(m: &Judged) -> String {
-    m.parameters.first().map_or(String::new(), |p| {
-        let middle = with_unit(&beside(p.q50, p.sd), &p.unit);
-        let name = plain(own_name(p, &m.name));
-        format!("{name} {middle} ({})", interval(p))
-    })
+/// The main parameter with its interval, and ever shorter: without its name,
+/// without its interval.
+fn sizes(m: &Judged) -> [String; 3] {
+    let Some(p) = m.parameters.first() else { return Default::default() };
+    let middle = with_unit(&beside(p.q50, p.sd), &p.unit);
+    let name = plain(own_name(p, &m.name));
+    let both = format!("{middle} ({})", interval(p));
+    [format!("{name} {both}"), both, middle]
+}
+
+/// The first of some texts that has room; the last one shortened where none
+/// has.
+fn fitting(texts: &[String; 3], room: usize) -> String {
+    let fits = texts.iter().find(|text| text.chars().count() <= room);
+    fits.map_or_else(|| shorten(&texts[2], room), String::clone)
 }
 
 fn compared(d: &Diagnosis) -> Vec<String> {

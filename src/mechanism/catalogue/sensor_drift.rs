@@ -34,7 +34,7 @@ impl Candidate for SensorDrift {
         let scale = DRIFT / self.extent.duration;
         vec![Unknown::amplitude(
             "drift",
-            "value/s",
+            self.extent.rate_unit,
             AnyPrior::Normal(0.0, scale),
         )]
     }
