@@ -164,6 +164,10 @@ impl Listener<Plain> for Collector {
 pub(super) struct Places {
     /// How many parameters there are.
     pub(super) count: usize,
+    /// Whether their names are heard too.
+    pub(super) hears_names: bool,
+    /// Their names.
+    pub(super) names: Vec<String>,
     /// Their values as named.
     pub(super) natural: Vec<f64>,
     /// Their places on the real line.
@@ -173,6 +177,9 @@ pub(super) struct Places {
 impl Listener<Plain> for Places {
     fn parameter(&mut self, declaration: &Declaration<'_, Plain>) {
         let support = declaration.prior.support();
+        if self.hears_names {
+            self.names.push(declaration.label.name());
+        }
         self.natural.push(declaration.value);
         self.line.push(support.to_line(declaration.value));
     }

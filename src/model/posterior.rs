@@ -248,9 +248,15 @@ impl<'m> Posterior<'m> {
         &self,
         rng: &mut Rng,
     ) -> Result<Option<Vec<f64>>> {
-        let line = self.places(Point::Prior(rng))?.line;
-        let is_whole = line.len() == self.dimension()
-            && line.iter().all(|z| z.is_finite());
+        let count = self.dimension();
+        let mut found =
+            Places { count, hears_names: true, ..Places::default() };
+        let density =
+            self.model.evaluate(Point::Prior(rng), Some(&mut found))?;
+        self.check_names(&found.names, &density)?;
+        let line = found.line;
+        let is_whole =
+            line.len() == count && line.iter().all(|z| z.is_finite());
         Ok(is_whole.then_some(line))
     }
 
