@@ -122,8 +122,8 @@ impl<P: Program> Subject<'_, P> {
         let seed = Seed::new(options.seed);
         check_odds(&options.odds, &self.all)?;
         let mut table = self.table(options, seed, progress)?;
-        progress.begin("weighing pairs", None);
         let row = self.taken(&mut table, options, seed, progress)?;
+        progress.begin("weighing several together", None);
         let decision = self.decide(&table, row, options, seed)?;
         progress.begin("showing", None);
         let mut diagnosis = self.shown(&table, &decision, options, seed)?;
