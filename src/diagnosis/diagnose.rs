@@ -264,7 +264,7 @@ impl<P: Program> Subject<'_, P> {
         let alone = [Seen::of(&table.rows[row])];
         let own = judge_all(&alone, all, &options.odds);
         let choice = Choice {
-            program: table.rows[row].noisy.program(),
+            noisy: &table.rows[row].noisy,
             all,
             found: table.rows[row].found()?,
             open: table.rows[row].open,

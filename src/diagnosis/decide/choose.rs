@@ -16,7 +16,8 @@ use crate::seed::Seed;
 
 /// What there is to choose from.
 pub(crate) struct Choice<'a, P> {
-    pub(crate) program: &'a P,
+    /// The model under the noise that it goes on with.
+    pub(crate) noisy: &'a Noisy<'a, P>,
     pub(crate) all: &'a [Box<dyn Mechanism>],
     /// The fit of each of them, under one noise.
     pub(crate) found: &'a Attribution,
@@ -52,8 +53,9 @@ impl<P: Program> Choice<'_, P> {
         let candidates = self.best_variants();
         let Some(first) = self.first(&candidates) else { return Ok(None) };
         let stepwise = Stepwise {
-            program: self.program,
+            program: self.noisy.program(),
             all: self.all,
+            open: self.noisy.own()[1],
             found: self.found,
             beforehand: &self.beforehand,
             candidates,

@@ -38,6 +38,9 @@ const AT_ONCE: usize = 4;
 pub(crate) struct Stepwise<'a, P> {
     pub(crate) program: &'a P,
     pub(crate) all: &'a [Box<dyn Mechanism>],
+    /// Where the model's own parameters are likely beside a force of free
+    /// form, on the real line.
+    pub(crate) open: &'a [f64],
     /// The fit of each of them.
     pub(crate) found: &'a Attribution,
     pub(crate) beforehand: &'a Beforehand<'a>,
@@ -185,7 +188,8 @@ impl<'a, P: Program> Stepwise<'a, P> {
     fn pair(&self, which: [usize; 2], seed: Seed) -> Result<Combination<'a>> {
         let mechanisms = which.map(|i| self.all[i].as_ref());
         let fits = which.map(|i| &self.found.candidates[i]);
-        Combination::pair(self.program, mechanisms, fits, seed)
+        let open = Some(self.open);
+        Combination::pair(self.program, mechanisms, fits, open, seed)
     }
 
     /// One term more beside some of the chosen.
@@ -210,6 +214,7 @@ impl<'a, P: Program> Stepwise<'a, P> {
             mechanisms: &mechanisms,
             added: &parameters,
             own: chosen.fit.own(),
+            open: Some(self.open),
         };
         let added = which[which.len() - 1];
         let added = (self.all[added].as_ref(), &self.found.candidates[added]);

@@ -25,7 +25,7 @@ pub(crate) fn gain<P: Program>(
     let drawn = drawn.map(|row| old.line(row));
     let drawn = drawn.collect::<Result<Vec<_>>>()?;
     let owns = owns.map(|own| (fit.added, own));
-    let starts = carried(&old, &drawn, &new, owns);
+    let starts = carried(&old, &drawn, &new, &owns);
     let log = |posterior: &Posterior<'_>, starts: Vec<Vec<f64>>| {
         let space = SearchSpace { starts, ..SearchSpace::default() };
         LaplaceMixture::within(space).outlook(posterior, seed)
@@ -41,11 +41,11 @@ const CARRIED: usize = 8;
 /// Places of one posterior as places of another: what both have is carried
 /// over by its name, the rest begins at each of some places of those after
 /// the first so many.
-fn carried(
+pub(super) fn carried(
     old: &Posterior<'_>,
     lines: &[Vec<f64>],
     new: &Posterior<'_>,
-    owns: [(usize, &[f64]); 2],
+    owns: &[(usize, &[f64])],
 ) -> Vec<Vec<f64>> {
     let place = |name: &str| {
         let mut all = old.parameters().iter();
@@ -53,8 +53,9 @@ fn carried(
     };
     let names = new.parameters().iter().map(|p| place(&p.name));
     let places: Vec<Option<usize>> = names.collect();
-    let each = lines.iter().flat_map(|line| owns.map(|own| (line, own)));
-    each.map(|(line, (added, own))| {
+    let beside = |line| owns.iter().map(move |own| (line, own));
+    let each = lines.iter().flat_map(beside);
+    each.map(|(line, &(added, own))| {
         let of = |(i, place): (usize, &Option<usize>)| match place {
             Some(place) => line[*place],
             None => own[i - added],

@@ -15,6 +15,8 @@ pub(crate) struct Known<'k, 'a> {
     pub(crate) added: &'k [f64],
     /// The model's own parameters.
     pub(crate) own: &'k [f64],
+    /// The same beside a force of free form.
+    pub(crate) open: Option<&'k [f64]>,
 }
 
 /// Mechanisms together after a quick look at them.
@@ -34,7 +36,10 @@ const STARTS: usize = 6;
 const SHORT: f64 = 1.0;
 
 impl<'a> Combination<'a> {
-    /// A pair: from the best of either, with the other anywhere.
+    /// A pair: from the best of either, with the other anywhere; and from both
+    /// where the model's own parameters are those that a force of free form
+    /// leaves. Beside one mechanism the noise may have swallowed what the
+    /// other explains, and a climb from there may end where it still does.
     ///
     /// # Errors
     /// An improper prior, or a model that fails.
@@ -42,6 +47,7 @@ impl<'a> Combination<'a> {
         program: &P,
         mechanisms: [&'a dyn Mechanism; 2],
         fits: [&Fit; 2],
+        open: Option<&[f64]>,
         seed: Seed,
     ) -> Result<Self> {
         let ([a, b], [of_a, of_b]) = (mechanisms, fits);
@@ -67,6 +73,8 @@ impl<'a> Combination<'a> {
         );
         // The best known places first.
         space.starts.insert(1, more.starts.remove(0));
+        let both = |own| [of_a.mechanism(), of_b.mechanism(), own].concat();
+        space.starts.splice(2..2, open.map(both));
         space.extend(more);
         Self::looked(program, mechanisms.to_vec(), space, seed.child(9))
     }
@@ -86,9 +94,11 @@ impl<'a> Combination<'a> {
         mechanisms.push(added);
         let with = With::new(program, &mechanisms);
         let posterior = Posterior::new(&with)?;
-        let Known { added: before, own, .. } = *known;
+        let Known { added: before, own, open, .. } = *known;
         let seed_of = seed.child(0);
-        let space = around(&posterior, added, best, before, own, seed_of)?;
+        let mut space = around(&posterior, added, best, before, own, seed_of)?;
+        let all = |own| [before, fit.mechanism(), own].concat();
+        space.starts.splice(1..1, open.map(all));
         Self::looked(program, mechanisms, space, seed.child(9))
     }
 
@@ -167,7 +177,7 @@ pub fn pair<P: Program>(
     hurdle: f64,
     seed: Seed,
 ) -> Result<Option<Fit>> {
-    let pair = Combination::pair(program, mechanisms, fits, seed)?;
+    let pair = Combination::pair(program, mechanisms, fits, None, seed)?;
     let found = pair.pursued(program, hurdle)?;
     found.map(|found| found.fit(program, Precision::Sharp)).transpose()
 }

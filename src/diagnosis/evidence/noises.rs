@@ -11,21 +11,23 @@ use std::ops::Deref;
 
 use rayon::prelude::*;
 
+use super::carried::carried;
 use super::fit::{Fit, Prospect, fit, prospect};
 use crate::diagnosis::locate::{Outlook, outlook};
 use crate::draws::log_sum_exp;
 use crate::error::Result;
 use crate::infer::{LaplaceMixture, Precision, SearchSpace};
 use crate::mechanism::Extent;
-use crate::model::{Posterior, Program};
+use crate::model::{Point, Posterior, Program};
 use crate::noise::{self, Form};
 use crate::seed::Seed;
 
-/// What errors may remember, besides what the named noise says: nothing, what
-/// a steady process does, the same with white errors; what the filter of a
-/// receiver leaves, with white errors or with a slow drift.
-const MEMORIES: [&str; 5] =
-    ["white", "ou", "ou + white", "matern32 + white", "matern32 + ou"];
+/// What errors may remember, besides what the named noise says: nothing, or
+/// what a steady process does.
+const SIMPLE: [&str; 2] = ["white", "ou"];
+/// The same with white errors; what the filter of a receiver leaves, with white
+/// errors or with a slow drift.
+const SUMS: [&str; 3] = ["ou + white", "matern32 + white", "matern32 + ou"];
 /// In log10: how far below the best a noise may be that is kept.
 pub(crate) const NEAR: f64 = 2.5;
 /// In ln: by how much a noise must have more evidence than simpler ones.
@@ -109,6 +111,13 @@ impl<'a, P: Program> Weighed<'a, P> {
         Form::of(&self.name)
     }
 
+    /// Whether a noise of that form need not be weighed beside it.
+    fn stands_for(&self, form: &Form, own_priors: bool) -> bool {
+        let own_form = self.form();
+        let alone = own_priors && self.program.is_named();
+        own_form.is_like(form) && (!alone || self.name == form.to_string())
+    }
+
     /// About ln of its evidence in either way: without physics, and with a
     /// force.
     fn logs(&self) -> [f64; 2] {
@@ -155,9 +164,11 @@ pub(crate) fn noises<'a, P: Program>(
     extent: &Extent,
     seed: Seed,
 ) -> Result<Noises<'a, P>> {
-    let survey = Survey { program, extent, seed };
+    let own_priors = has_own_priors(program, named, seed.child(1))?;
+    let survey = Survey { program, extent, own_priors, seed };
     let mut all = vec![survey.named(named)?];
-    all.extend(survey.others(MEMORIES.map(Form::of).into(), &all)?);
+    all.extend(survey.others(SIMPLE.map(Form::of).into(), &all)?);
+    all.extend(survey.others(SUMS.map(Form::of).into(), &all)?);
     for forms in [decorated, doubly_decorated] {
         let mut further = survey.others(forms(&all), &all)?;
         further.retain(|one| pays(one, &all));
@@ -170,6 +181,10 @@ pub(crate) fn noises<'a, P: Program>(
 struct Survey<'a, 'e, P> {
     program: &'a P,
     extent: &'e Extent,
+    /// Whether the named noise has other priors than follow from the event: it
+    /// stands for itself alone then. Priors that fit errors of one recording
+    /// may rule out those of another, and the same kind of noise with them.
+    own_priors: bool,
     seed: Seed,
 }
 
@@ -181,8 +196,9 @@ impl<'a, P: Program> Survey<'a, '_, P> {
         forms: Vec<Form>,
         known: &[Weighed<'a, P>],
     ) -> Result<Vec<Weighed<'a, P>>> {
-        let is_new =
-            |form: &Form| !known.iter().any(|one| one.form().is_like(form));
+        let is_new = |form: &Form| {
+            !known.iter().any(|one| one.stands_for(form, self.own_priors))
+        };
         let mut new = Vec::new();
         for form in forms.into_iter().filter(is_new) {
             let name = form.to_string();
@@ -197,7 +213,9 @@ impl<'a, P: Program> Survey<'a, '_, P> {
         }
         let weighed: Vec<Result<(Prospect, Outlook)>> = new
             .par_iter()
-            .map(|(name, program)| self.weighed(name, program))
+            .map(|(name, program)| {
+                self.weighed(name, program, simpler(name, known))
+            })
             .collect();
         // A noise under which nothing has a density is out of the question.
         let found = new.into_iter().zip(weighed);
@@ -211,19 +229,73 @@ impl<'a, P: Program> Survey<'a, '_, P> {
 
     /// The named one.
     fn named(&self, name: &str) -> Result<Weighed<'a, P>> {
-        let (none, open) = self.weighed(name, self.program)?;
+        let (none, open) = self.weighed(name, self.program, None)?;
         let program = Held::Named(self.program);
         Ok(Weighed { name: name.to_owned(), program, none, open })
     }
 
-    fn weighed(&self, name: &str, program: &P) -> Result<(Prospect, Outlook)> {
+    /// Without physics and with a force. That is sought from where the noise
+    /// is likely without it, and from where the force made a simpler noise
+    /// likely: the one may have swallowed the mismatch, and a climb from there
+    /// may end where it still does.
+    fn weighed(
+        &self,
+        name: &str,
+        program: &P,
+        simpler: Option<&Weighed<'_, P>>,
+    ) -> Result<(Prospect, Outlook)> {
         let seed = self.seed.called(name);
         let none = prospect(program, &[], rough_search(), seed.child(0))?;
         let rough = Precision::Rough;
-        let own = none.fit(program, &[], rough, seed.child(2))?.best;
-        let open = outlook(program, self.extent, &own, seed.child(3))?;
+        let mut owns =
+            vec![none.fit(program, &[], rough, seed.child(2))?.best];
+        if let Some(simpler) = simpler {
+            let old = Posterior::new(&*simpler.program)?;
+            let new = Posterior::new(program)?;
+            let (lines, own) = ([simpler.open.own.clone()], owns[0].clone());
+            owns.extend(carried(&old, &lines, &new, &[(0, &own)]));
+        }
+        let open = outlook(program, self.extent, &owns, seed.child(3))?;
         Ok((none, open))
     }
+}
+
+/// Whether a program's noise has other priors than the same noise gets where
+/// nobody states any.
+fn has_own_priors<P: Program>(
+    program: &P,
+    named: &str,
+    seed: Seed,
+) -> Result<bool> {
+    if noise::parse(named).is_err() {
+        return Ok(false);
+    }
+    // By way of another memory, which leaves the priors of this one behind.
+    let [white, ou] = SIMPLE;
+    let is_white = Form::of(named).plain().is_like(&Form::of(white));
+    let other = program.with_noise(if is_white { ou } else { white })?;
+    let default = other.map(|other| other.with_noise(named)).transpose()?;
+    let Some(default) = default.flatten() else { return Ok(false) };
+    let (own, default) = (Posterior::new(program)?, Posterior::new(&default)?);
+    let Some(place) = own.draw_place(&mut seed.rng())? else {
+        return Ok(false);
+    };
+    let log = |of: &Posterior<'_>| -> Result<f64> {
+        Ok(of.density(Point::Line(&place))?.log_prior)
+    };
+    let (own, default) = (log(&own)?, log(&default)?);
+    Ok((own - default).abs() > 1e-9 * own.abs())
+}
+
+/// Of some noises the one that is simpler than another and has the most
+/// evidence with a force.
+fn simpler<'w, 'a, P: Program>(
+    name: &str,
+    known: &'w [Weighed<'a, P>],
+) -> Option<&'w Weighed<'a, P>> {
+    let form = Form::of(name);
+    let simpler = known.iter().filter(|one| one.form().is_simpler_than(&form));
+    simpler.max_by(|a, b| a.open.log.total_cmp(&b.open.log))
 }
 
 /// A search that says which noises are worth a thorough one.

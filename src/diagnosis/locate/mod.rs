@@ -166,31 +166,41 @@ pub(crate) struct Outlook {
 }
 
 /// About what a free-form force over distance brings to a model whose own
-/// parameters are likely there, on the real line: from few draws.
+/// parameters may be likely at some places, on the real line: from few draws,
+/// about the best of these.
 ///
 /// # Errors
 /// As [`locate`].
 pub(crate) fn outlook<P: Program>(
     program: &P,
     extent: &Extent,
-    own: &[f64],
+    owns: &[Vec<f64>],
     seed: Seed,
 ) -> Result<Outlook> {
     let form = FreeForm::cells(extent, Axis::Place);
     let with = With::new(program, &[&form]);
     let posterior = Posterior::new(&with)?;
     let sought = Sought { cells: Cells(&posterior), extent };
-    let looks = sought.looks(own, COARSE)?;
-    let higher =
-        |a: &&Look, b: &&Look| a.log_evidence.total_cmp(&b.log_evidence);
-    let best = looks.iter().max_by(higher);
-    let own = best
+    let mut looks: Vec<Look> = Vec::new();
+    for own in owns {
+        let others = sought.looks(own, COARSE)?;
+        let log = |all: &[Look]| highest(all).map(|look| look.log_evidence);
+        if looks.is_empty() || log(&others) > log(&looks) {
+            looks = others;
+        }
+    }
+    let own = highest(&looks)
         .map_or_else(Vec::new, |look| look.tangent.own.as_slice().to_vec());
     let mixture = proposal(&looks)?;
     let marginal = Marginal { sought, looks, shared: program.events() > 1 };
     let learned = learn(&marginal, mixture, GLANCE, seed.child(0))?;
     let found = integrated(&marginal, &learned, GLANCE, seed.child(1))?;
     Ok(Outlook { log: found.sum.log, own })
+}
+
+/// The look with the most evidence.
+fn highest(looks: &[Look]) -> Option<&Look> {
+    looks.iter().max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence))
 }
 
 /// A force of free form over distance on top of a model with mechanisms that
