@@ -335,12 +335,19 @@ fn doubly_decorated<P: Program>(all: &[Weighed<'_, P>]) -> Vec<Form> {
     grow.map(|form| Form { has_tails: true, ..form }).collect()
 }
 
-/// Whether it has more evidence than each simpler noise, in either way: one
-/// that does not says the same in more parameters.
+/// Whether it has more evidence than each simpler noise, in either way, and
+/// than its like with the priors of the named one: a noise that does not says
+/// the same in more parameters, or in other priors.
 fn pays<P: Program>(one: &Weighed<'_, P>, all: &[Weighed<'_, P>]) -> bool {
     let form = one.form();
-    let simpler =
-        all.iter().filter(|other| other.form().is_simpler_than(&form));
+    let named = all.iter().find(|other| other.program.is_named());
+    let memory = named.map(|named| named.form().memory);
+    let is_stated = |form: &Form| Some(&form.memory) == memory.as_ref();
+    let simpler = all.iter().filter(|other| {
+        let other = other.form();
+        let is_like = is_stated(&other) && !is_stated(&form);
+        other.is_simpler_than(&form) || (is_like && other.is_like(&form))
+    });
     let ([without, with], logs) = (most(simpler), one.logs());
     logs[0] > without + MORE || logs[1] > with + MORE
 }
