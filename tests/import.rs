@@ -337,7 +337,7 @@ fn what_does_not_fit_is_refused_with_a_mend() {
         (&["--threshold", "50"], "its top speed is 20.00 m/s"),
         (&["--from", "39.9"], "expected at least 6"),
         (&["--from", "07:00:00"], "whose times are numbers"),
-        (&["--smooth", "-1"], "--smooth"),
+        (&["--smooth=-1"], "--smooth: found -1"),
         (&["--smooth", "nan"], "--smooth: found NaN"),
         (&["--columns", "speed=w"], "log.csv:1: the header is"),
         (&["--from", "2", "--to", "8"], "it never does"),

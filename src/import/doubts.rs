@@ -87,7 +87,7 @@ fn gaps(case: &Case) -> Option<String> {
     let longest =
         *long.iter().max_by(|a, b| steps[**a].total_cmp(&steps[**b]))?;
     Some(format!(
-        "The log has {} gaps; the longest is {:.2} s from t = {:.2} s, where \
+        "Gaps in the log: {}; the longest is {:.2} s from t = {:.2} s, where \
          rows are {usual:.2} s apart otherwise.",
         long.len(),
         steps[longest],
@@ -102,7 +102,7 @@ fn satellites(case: &Case) -> Option<String> {
     let least = counts.iter().copied().fold(f64::INFINITY, f64::min);
     (few > 0).then(|| {
         format!(
-            "{few} of {} rows have fewer than {FEW} satellites, the least \
+            "Rows with fewer than {FEW} satellites: {few} of {}, the least \
              {least}.",
             counts.len()
         )
@@ -115,9 +115,9 @@ fn far(case: &Case) -> Option<String> {
     let most = off.fold(0.0, f64::max);
     (case.is_given && far > 0).then(|| {
         format!(
-            "{far} of {} positions are more than {FAR} m from the path, the \
-             furthest {most:.0} m: the track is the path's, which may not \
-             be where the sensor went.",
+            "Positions more than {FAR} m from the path: {far} of {}, the \
+             furthest {most:.0} m. The track is the path's, which may not be \
+             where the sensor went.",
             case.beside.len()
         )
     })
@@ -220,7 +220,7 @@ fn holes(case: &Case) -> Option<String> {
     let none = all.iter().filter(|z| z.is_none()).count();
     (none > 0).then(|| {
         format!(
-            "{none} of {} positions have no elevation in the terrain model; \
+            "Positions with no elevation in the terrain model: {none} of {}; \
              between places that have one the track is linear.",
             all.len()
         )

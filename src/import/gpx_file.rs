@@ -90,8 +90,8 @@ fn log_of(
     )];
     let lost = (lost > 0).then(|| {
         format!(
-            "{lost} points have no time, or none after that of the point \
-             before, and were passed over."
+            "Points passed over for want of a time after that of the point \
+             before: {lost}."
         )
     });
     let doubts = lost.into_iter().collect();

@@ -321,15 +321,14 @@ impl<'r> Reader<'r> {
         let mut doubts = Vec::new();
         if rows.empty > 0 {
             doubts.push(format!(
-                "{} rows have no time, no place or no speed, and were passed \
-                 over.",
+                "Rows passed over for want of a time, a place or a speed: {}.",
                 rows.empty
             ));
         }
         if let Some(first) = rows.back.first() {
             doubts.push(format!(
-                "{} rows are not later than the row before them and were \
-                 passed over, the first in line {first}.",
+                "Rows passed over because they are not later than the row \
+                 before: {}, the first in line {first}.",
                 rows.back.len()
             ));
         }
