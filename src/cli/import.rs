@@ -64,7 +64,9 @@ impl Arguments {
         let width = width();
         let mut text = String::new();
         for line in imported.told().lines() {
-            text.push_str(&wrap(line, width).join("\n"));
+            // Below a dash, lines begin where its first one does.
+            let below = if line.starts_with("- ") { "\n  " } else { "\n" };
+            text.push_str(&wrap(line, width - 2).join(below));
             text.push('\n');
         }
         text.push_str(&results.told(&wrote, &FILES, width));
@@ -75,7 +77,7 @@ impl Arguments {
             }
             Some(_) => String::new(),
         });
-        Ok(Answer { failed: wrote.err(), ..Answer::from(text) })
+        Ok(Answer::from(text).after(wrote))
     }
 
     fn options(&self) -> Options {

@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn moments_are_read_as_logs_write_them() {
-        assert_eq!(at("201100800"), Some(201_100.8));
+        assert!((at("201100800").unwrap() - 201_100.8).abs() < 1e-6);
         assert_eq!(at("07:51:22.5"), Some(28_282.5));
         assert_eq!(at("1970-01-02 00:00:01"), Some(DAY + 1.0));
         assert_eq!(at("02.01.1970 00:00:01"), Some(DAY + 1.0));

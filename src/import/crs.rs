@@ -214,7 +214,6 @@ mod tests {
             "+proj=utm +zone=99",
             "+",
             "+proj=tmerc +lat_0=x",
-            "+proj=utm",
         ] {
             let error = Crs::parse(text).map(|crs| crs.name).unwrap_err();
             assert!(error.to_string().starts_with("--crs: "), "{error}");

@@ -174,7 +174,7 @@ fn receiver(case: &Case) -> Option<String> {
 
 fn kind(case: &Case) -> Option<String> {
     match case.log.kind {
-        SpeedKind::Along => None,
+        SpeedKind::Whole | SpeedKind::Along => None,
         SpeedKind::Ground => Some(
             "The receiver's speed over ground knows nothing of the slope: \
              the slope of the track is used, and its errors are in the \

@@ -5,13 +5,12 @@ use toml_edit::value;
 use super::case::Case;
 use super::log::SpeedKind;
 
-/// The event.toml, each number with where it comes from. The priors are those
-/// of a new event.
+/// The event.toml, each number with where it comes from.
 pub(super) fn toml(case: &Case) -> String {
     let name = value(case.name.as_str()).to_string();
     let velocity = case.recorded.first().copied().unwrap_or(0.0);
     let speeds = match case.log.kind {
-        SpeedKind::Along => "the receiver's own",
+        SpeedKind::Whole | SpeedKind::Along => "the receiver's own",
         SpeedKind::Ground => "the receiver's over ground, by the slope",
         SpeedKind::Positions => "by positions",
     };
@@ -28,8 +27,8 @@ pub(super) fn toml(case: &Case) -> String {
          what is\n# doubted. All quantities are SI.\n\
          name = {}\n\n\
          [track]\n\
-         file = \"track.csv\"               # x: horizontal distance {path} \
-         [m],\n\
+         file = \"track.csv\"               # x: horizontal distance [m],\n\
+         {SPACE}# {path};\n\
          {SPACE}# z: elevation {terrain} [m]\n\n\
          [release]\n\
          x = 0.0                          # where the recording begins [m]\n\
@@ -53,18 +52,19 @@ pub(super) fn toml(case: &Case) -> String {
 /// Up to where comments stand.
 const SPACE: &str = "                                 ";
 
-/// What the import does not know: as in a new event, but for the noise.
+/// What the import does not know: law and priors as in a new event. The noise
+/// is left open, since a sensor's errors are rarely independent, and only some
+/// noises take uneven times.
 const MODEL: &str = "\
 [model]
 friction = \"voellmy\"             # not from the files: the usual law
-noise = \"ar(1)\"                  # a sensor's errors are correlated; \"infer\"
-                                 # takes whichever noise is likely
+noise = \"infer\"                  # whichever noise is likely; faster by far:
+                                 # \"iid\", or \"ar(1)\" for errors that are
+                                 # correlated
 
 [priors]                         # not from the files: those of `couloir new`
 mu = \"Gamma(9, 0.03)\"
 xi = \"Gamma(2.5, 400)\"
-phi = \"Uniform(-1, 1)\"           # correlation with the value before
-sigma2 = \"InverseGamma(2, 1)\"    # variance [m2/s2]
 ";
 
 /// The track.csv: horizontal distance and elevation \[m\].

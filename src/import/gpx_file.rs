@@ -64,17 +64,16 @@ fn log_of(
     for (number, point) in (1..).zip(points) {
         let Some((moment, point)) = point else { continue };
         let time = moment.seconds - begin.seconds;
-        let finite = |x: &f64| x.is_finite();
-        let speed = point.speed.filter(|_| has_speed).filter(finite);
         if fixes.last().is_some_and(|last| time <= last.time) {
             continue;
         }
+        let finite = |x: &f64| x.is_finite();
         fixes.push(Fix {
             row: number,
             time,
             place: (point.point().x(), point.point().y()),
             height: point.elevation.filter(finite),
-            speed,
+            speed: point.speed.filter(|_| has_speed).filter(finite),
             satellites: point.sat.map(|count| count as f64),
         });
     }

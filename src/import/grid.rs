@@ -93,19 +93,21 @@ fn entry(text: &str) -> Result<(String, f64), String> {
     }
 }
 
+/// What is wrong with a header that has no such key.
+fn lacks(key: &str) -> (usize, String) {
+    let what = format!(
+        "the header has no {key}; expected ncols, nrows, xllcorner or \
+         xllcenter, yllcorner or yllcenter, and cellsize: export the terrain \
+         model as an ESRI ASCII grid"
+    );
+    (1, what)
+}
+
 impl Grid {
     /// A grid as its header says, without elevations.
     fn of(
         header: &BTreeMap<String, (usize, f64)>,
     ) -> Result<Self, (usize, String)> {
-        let lacks = |key: &str| {
-            let what = format!(
-                "the header has no {key}; expected ncols, nrows, xllcorner \
-                 or xllcenter, yllcorner or yllcenter, and cellsize: export \
-                 the terrain model as an ESRI ASCII grid"
-            );
-            (1, what)
-        };
         let get = |key: &str| header.get(key).copied();
         let count = |key: &str| match get(key) {
             None => Err(lacks(key)),
@@ -131,14 +133,15 @@ impl Grid {
                 return Err((line, what));
             }
         };
-        let corner = |axis: &str| {
-            let middle = get(&format!("{axis}llcenter")).map(|h| h.1);
+        // The middle of the first cell, whichever way it is given.
+        let middle = |axis: &str| {
             let edge = get(&format!("{axis}llcorner")).map(|h| h.1);
+            let middle = get(&format!("{axis}llcenter")).map(|h| h.1);
             let at = middle.or(edge.map(|at| at + 0.5 * cell));
             at.filter(|at| at.abs() < 1e9)
                 .ok_or_else(|| lacks(&format!("{axis}llcorner")))
         };
-        let (west, south) = (corner("x")?, corner("y")?);
+        let (west, south) = (middle("x")?, middle("y")?);
         Ok(Self { columns, rows, west, south, cell, z: Vec::new() })
     }
 

@@ -23,7 +23,10 @@ pub(super) struct Fix {
 /// What the speeds of a log are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum SpeedKind {
-    /// Along the slope.
+    /// The length of a velocity to the north, the east and down: along the
+    /// slope.
+    Whole,
+    /// A column of speeds, taken as those along the slope.
     Along,
     /// Over ground: horizontal.
     Ground,

@@ -79,7 +79,7 @@ mod tests {
 
     #[test]
     fn the_longest_stretch_is_found_and_widened() {
-        let times: Vec<f64> = (0..40).map(|i| 0.5 * f64::from(i)).collect();
+        let times: Vec<f64> = (0..40).map(|i| 0.4 * f64::from(i)).collect();
         let mut speeds = vec![0.1; 40];
         speeds[2..5].fill(9.0);
         speeds[10..20].fill(3.0);

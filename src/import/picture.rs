@@ -85,8 +85,8 @@ fn from_above(canvas: &mut Canvas, frame: Frame, case: &Case) {
     let after = from(&case.places[case.phase.last + 1..]);
     dots(canvas, &axes, &before, CUT.faded(0.4));
     dots(canvas, &axes, &after, CUT.faded(0.4));
+    dots(canvas, &axes, &own, Pen::new(MASS, 5.0));
     curve(canvas, &axes, &line, TRACK);
-    dots(canvas, &axes, &own, TAKEN);
     canvas.unclip();
 }
 
@@ -133,10 +133,10 @@ fn elevations(canvas: &mut Canvas, frame: Frame, case: &Case) {
     canvas.clip(frame);
     dots(canvas, &axes, &own, CUT.faded(0.4));
     dots(canvas, &axes, &samples, CUT);
-    curve(canvas, &axes, &track, TRACK);
     let taken = distances.iter().filter_map(|x| Some((*x, ground.at(*x)?)));
     let taken: Vec<_> = taken.collect();
-    dots(canvas, &axes, &taken, Pen::new(MASS, 2.0));
+    dots(canvas, &axes, &taken, Pen::new(MASS, 5.0));
+    curve(canvas, &axes, &track, TRACK);
     canvas.unclip();
 }
 

@@ -165,7 +165,12 @@ impl Role {
             "hh:mm" | "UTC" | "utc" => "hh:mm:ss",
             other => other,
         };
-        let mut units = self.known().units.iter();
+        let known = self.known().units;
+        if known == COUNTS {
+            // Whatever a header says there: fixType[0-5].
+            return Some(1.0);
+        }
+        let mut units = known.iter();
         units.find(|known| known.0 == unit).map(|known| known.1)
     }
 

@@ -17,6 +17,9 @@ use crate::io::{MOST_ROWS, place, quoted};
 /// and a number.
 const MOST_ODD: (f64, usize) = (0.1, 10);
 
+/// The parts of a velocity.
+const WHOLE: [Role; 3] = [Role::North, Role::East, Role::Down];
+
 /// A table being read.
 struct Reader<'r> {
     path: &'r Path,
@@ -83,6 +86,22 @@ fn separator(text: &str) -> u8 {
     all.into_iter().max_by_key(count).unwrap_or(b',')
 }
 
+/// What the speeds are, and the columns of which they are made.
+fn kind(found: &Found) -> (SpeedKind, &'static [Role]) {
+    let has = |roles: &[Role]| roles.iter().all(|r| found.contains_key(r));
+    if has(&WHOLE) {
+        (SpeedKind::Whole, &WHOLE)
+    } else if has(&[Role::Speed]) {
+        (SpeedKind::Along, &[Role::Speed])
+    } else if has(&[Role::GroundSpeed]) {
+        (SpeedKind::Ground, &[Role::GroundSpeed])
+    } else if has(&WHOLE[..2]) {
+        (SpeedKind::Ground, &WHOLE[..2])
+    } else {
+        (SpeedKind::Positions, &[])
+    }
+}
+
 impl<'r> Reader<'r> {
     fn new(
         path: &'r Path,
@@ -104,16 +123,13 @@ impl<'r> Reader<'r> {
                 quoted(&header.join(","))
             ));
         }
-        let kind = if has(&[Role::North, Role::East, Role::Down])
-            || has(&[Role::Speed])
-        {
-            SpeedKind::Along
-        } else if has(&[Role::GroundSpeed]) || has(&[Role::North, Role::East])
-        {
-            SpeedKind::Ground
-        } else {
-            SpeedKind::Positions
-        };
+        let (kind, of_speed) = kind(&found);
+        // Of speeds only those that are used stay.
+        let rivals = Role::Speed.rivals();
+        let mut found = found;
+        found.retain(|role, _| {
+            !rivals.contains(role) || of_speed.contains(role)
+        });
         Ok(Self { path, separator, found, kind, is_geographic })
     }
 
@@ -212,11 +228,12 @@ impl<'r> Reader<'r> {
         let level = north.zip(east).map(|(n, e)| n.hypot(e));
         Ok(match self.kind {
             SpeedKind::Positions => None,
+            SpeedKind::Along => number(Role::Speed)?,
             SpeedKind::Ground => number(Role::GroundSpeed)?.or(level),
-            SpeedKind::Along => match (level, number(Role::Down)?) {
-                (Some(level), Some(down)) => Some(level.hypot(down)),
-                _ => number(Role::Speed)?,
-            },
+            SpeedKind::Whole => {
+                let both = level.zip(number(Role::Down)?);
+                both.map(|(level, down)| level.hypot(down))
+            }
         })
     }
 
@@ -355,7 +372,8 @@ mod tests {
                     1200,3,11.38,47.31,2303848,0,0,500,2236,11,2303\n";
         let log = log(text, "").unwrap();
         let fixes = &log.fixes;
-        assert_eq!((fixes.len(), log.kind), (2, SpeedKind::Along));
+        assert_eq!((fixes.len(), log.kind), (2, SpeedKind::Whole));
+        assert!(!log.said[0].contains("gSpeed"), "{:?}", log.said);
         assert!((fixes[0].speed.unwrap() - 3.0).abs() < 1e-12);
         assert!((fixes[1].time - 0.2).abs() < 1e-12);
         assert_eq!(fixes[1].row, 4);

@@ -106,10 +106,13 @@ fn speeds(log: &Log, level: &[f64], said: &mut Vec<String>) -> Vec<f64> {
             let own = log.fixes.iter().zip(level);
             let own = own.map(|(fix, l)| fix.speed.unwrap_or(*l)).collect();
             let says = match kind {
+                SpeedKind::Whole => {
+                    "Speeds are the receiver's own: the length of its \
+                     velocity to the north, to the east and down."
+                }
                 SpeedKind::Along => {
                     "Speeds are the receiver's own, taken as those along the \
-                     slope; where it gives north, east and down they are the \
-                     length of all three."
+                     slope."
                 }
                 _ => {
                     "Speeds are the receiver's own over ground, divided by \
@@ -205,23 +208,42 @@ fn path(
     taken: &[Place],
     said: &mut Vec<String>,
 ) -> Result<(Line, Vec<Beside>)> {
-    let Some((outline, crs)) = given else {
-        let line = Line::thinned(taken, STEP).ok_or_else(|| {
-            Error::input(format!(
-                "{}: the positions never change; expected a sensor that \
-                 moves: take another part with --from and --to",
-                place(&options.log)
-            ))
-        })?;
-        said.push(format!(
-            "The path is the log's own positions, {:.1} m long seen from \
-             above; those less than {STEP} m from the last one kept are no \
-             way.",
-            line.length()
-        ));
-        let beside = line.follow(taken);
-        return Ok((line, beside));
-    };
+    match given {
+        None => own_path(options, taken, said),
+        Some((outline, crs)) => given_path(options, outline, crs, taken, said),
+    }
+}
+
+/// The path through the positions themselves.
+fn own_path(
+    options: &Options,
+    taken: &[Place],
+    said: &mut Vec<String>,
+) -> Result<(Line, Vec<Beside>)> {
+    let line = Line::thinned(taken, STEP).ok_or_else(|| {
+        Error::input(format!(
+            "{}: the positions never change; expected a sensor that moves: \
+             take another part with --from and --to",
+            place(&options.log)
+        ))
+    })?;
+    said.push(format!(
+        "The path is the log's own positions, {:.1} m long seen from above; \
+         those less than {STEP} m from the last one kept are no way.",
+        line.length()
+    ));
+    let beside = line.follow(taken);
+    Ok((line, beside))
+}
+
+/// The path of a file, turned round where the motion goes against it.
+fn given_path(
+    options: &Options,
+    outline: &Outline,
+    crs: Option<&Crs>,
+    taken: &[Place],
+    said: &mut Vec<String>,
+) -> Result<(Line, Vec<Beside>)> {
     let file = options.path.as_deref().map(place).unwrap_or_default();
     let line = Line::through(&plane::path(outline, crs)?).ok_or_else(|| {
         Error::input(format!(
@@ -241,10 +263,13 @@ fn path(
     };
     let off: Vec<f64> = beside.iter().map(|b| b.off).collect();
     check_path(&file, median(&off), way, outline.count)?;
+    let which = match outline.count {
+        1 => "the line".to_owned(),
+        count => format!("the longest of {count} lines"),
+    };
     said.push(format!(
-        "The path is the longest of {} lines of {file}{turned}; positions \
-         were put on its nearest place, at the median {:.1} m away.",
-        outline.count,
+        "The path is {which} of {file}{turned}; positions were put on its \
+         nearest place, at the median {:.1} m away.",
         median(&off)
     ));
     Ok((line, beside))
@@ -386,7 +411,7 @@ fn told_ground(
 fn along_slope(case: &Case) -> Vec<f64> {
     let taken = &case.speeds[case.phase.first..=case.phase.last];
     match case.log.kind {
-        SpeedKind::Along => taken.to_vec(),
+        SpeedKind::Whole | SpeedKind::Along => taken.to_vec(),
         _ => taken
             .iter()
             .zip(case.distances())
