@@ -19,11 +19,15 @@ fn ending(path: &Path) -> String {
 
 /// A log: GPX by its name, anything else as a table.
 pub(super) fn log(path: &Path, columns: Option<&str>) -> Result<Log> {
-    let columns = Columns::parse(columns.unwrap_or_default())?;
+    let named = Columns::parse(columns.unwrap_or_default())?;
     let text = read_any_text(path)?;
     match ending(path).as_str() {
+        "gpx" if columns.is_some() => Err(Error::input(
+            "--columns: is given, and GPX has no columns; expected it with a \
+             table of text only: leave it out",
+        )),
         "gpx" => gpx_file::read(&text, path),
-        _ => table::read(&text, path, &columns),
+        _ => table::read(&text, path, &named),
     }
 }
 

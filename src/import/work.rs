@@ -36,9 +36,14 @@ pub(super) fn work_out(options: &Options) -> Result<Case> {
     let crs = plane::projection(options, &log, outline.as_ref())?;
     let places = plane::places(&log, crs.as_ref())?;
     let mut said = log.said.clone();
-    said.extend(crs.as_ref().filter(|_| log.is_geographic).map(|crs| {
-        format!("Longitudes and latitudes were brought to {}.", crs.name)
-    }));
+    said.push(match &crs {
+        Some(crs) if log.is_geographic => {
+            format!("Longitudes and latitudes were brought to {}.", crs.name)
+        }
+        _ => "The log's x and y were taken as metres on the projection of \
+              terrain and path."
+            .to_owned(),
+    });
     let level = by_positions(&log, &places);
     let speeds = speeds(&log, &level, &mut said);
     let (phase, others) = moving(options, &log, &speeds, &mut said)?;
