@@ -347,7 +347,7 @@ fn what_does_not_fit_is_refused_with_a_mend() {
         (&["--smooth=-1"], "--smooth: found -1"),
         (&["--smooth", "nan"], "--smooth: found NaN"),
         (&["--columns", "speed=w"], "log.csv:1: the header is"),
-        (&["--from", "2", "--to", "8"], "it never does"),
+        (&["--from", "2", "--to", "8"], "the positions never change"),
     ];
     for (more, part) in cases {
         let out = folder.join("out");
