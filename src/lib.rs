@@ -73,7 +73,7 @@
 //! | [`mod@model`] | one run of a model, asked in different ways |
 //! | [`infer`], [`predict`] | backends; predictions |
 //! | [`elpd`], [`io`], [`report`] | prediction of what was left out; event files in; tables, pictures and pages out |
-//! | [`calibrate`], [`diagnosis`] | a whole calibration; what a model lacks |
+//! | [`calibrate`], [`diagnosis`], [`mod@import`] | a whole calibration; what a model lacks; events from logs |
 //! | [`averaged`], [`sbc`] | a calibration averaged over noises, and beside a force of free form; whether inference can be trusted |
 //! | [`mod@reproduce`], [`challenge`] | the paper's study, computed again; hidden effects, made without the engine, and the score |
 //! | [`cli`] | the command: nothing below it prints |
@@ -82,6 +82,8 @@
 //!
 //! - `cli`, on: the command and its studies; whoever only wants the library
 //!   takes `default-features = false`.
+//! - `import`, on: [`mod@import`], with the crates that read and project
+//!   places.
 //! - `pages`, of `cli`: results as pages of HTML.
 //! - `nuts`, off: the backend `nuts`, by the crate nuts-rs.
 //!
@@ -109,6 +111,8 @@ pub mod diagnosis;
 pub mod draws;
 pub mod elpd;
 pub mod error;
+#[cfg(feature = "import")]
+pub mod import;
 pub mod infer;
 pub mod io;
 pub mod mechanism;

@@ -9,6 +9,8 @@ mod calibrate;
 mod challenge;
 mod compare;
 mod diagnose;
+#[cfg(feature = "import")]
+mod import;
 mod new;
 mod pace;
 mod predictive;
@@ -51,6 +53,9 @@ enum Command {
     Simulate(simulate::Arguments),
     /// Write a commented event to start from
     New(new::Arguments),
+    /// Make an event of a GNSS log, a terrain model and a path
+    #[cfg(feature = "import")]
+    Import(import::Arguments),
     /// Run every backend on an event, side by side
     Bench(bench::Arguments),
     /// Diagnose events that hide one effect each, and score the answers
@@ -197,6 +202,8 @@ impl Command {
             Self::Challenge(arguments) => arguments.run(),
             Self::Simulate(arguments) => arguments.run(laws),
             Self::New(arguments) => arguments.run().map(Answer::from),
+            #[cfg(feature = "import")]
+            Self::Import(arguments) => arguments.run(),
             Self::Bench(arguments) => arguments.run(laws),
             Self::Reproduce(arguments) => arguments.run(),
         }

@@ -10,6 +10,8 @@ mod document;
 mod doubtful;
 mod embedded;
 mod event_file;
+#[cfg(feature = "import")]
+mod foreign;
 #[cfg(feature = "cli")]
 mod inputs;
 mod lines;
@@ -25,9 +27,13 @@ pub use corrected::{Correction, corrected};
 pub use csv_file::{MOST_ROWS, read_depth, read_recording, read_track};
 pub use embedded::coastdown;
 pub use event_file::{EventFile, load, parse_event};
+#[cfg(feature = "import")]
+pub(crate) use foreign::{read_any_text, read_bytes};
 #[cfg(feature = "cli")]
 pub(crate) use inputs::inputs;
 #[cfg(feature = "cli")]
 pub(crate) use run_folder::{prepare_run, write_run};
 pub use template::new_event;
+#[cfg(feature = "import")]
+pub(crate) use words::{either, nearest, place, quoted};
 pub use write::write_all;

@@ -11,7 +11,7 @@ const LONGEST: usize = 60;
 pub(super) const LARGEST: f64 = 1e9;
 
 /// Foreign text in quotes, its control characters escaped and its end cut.
-pub(super) fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     match text.char_indices().nth(LONGEST) {
         None => format!("{text:?}"),
         Some((end, _)) => format!("{:?}...", &text[..end]),
@@ -27,13 +27,13 @@ pub(super) fn breaks_line(c: char) -> bool {
 }
 
 /// A path as the user gave it, unless that would break the line.
-pub(super) fn place(path: &Path) -> String {
+pub(crate) fn place(path: &Path) -> String {
     let text = path.display().to_string();
     if text.chars().any(breaks_line) { format!("{text:?}") } else { text }
 }
 
 /// The names in quotes: "a", "b" or "c".
-pub(super) fn either(names: &[&str]) -> String {
+pub(crate) fn either(names: &[&str]) -> String {
     let quoted: Vec<_> = names.iter().map(|n| format!("{n:?}")).collect();
     match quoted.split_last() {
         None => "nothing".to_owned(),
@@ -43,7 +43,7 @@ pub(super) fn either(names: &[&str]) -> String {
 }
 
 /// The name that a misspelt one is closest to, if any is close.
-pub(super) fn nearest<'n>(found: &str, known: &[&'n str]) -> Option<&'n str> {
+pub(crate) fn nearest<'n>(found: &str, known: &[&'n str]) -> Option<&'n str> {
     if found.len() > LONGEST {
         return None;
     }

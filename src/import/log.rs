@@ -1,0 +1,83 @@
+//! A log as it was read, whatever file it came in.
+
+use super::clock::{DAY, Moment};
+use crate::error::{Error, Result};
+use crate::io::quoted;
+
+/// A row of a log.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Fix {
+    /// Its line in the file, or its number where it has no lines.
+    pub(super) row: u64,
+    /// Seconds since the log's first row.
+    pub(super) time: f64,
+    /// Longitude and latitude \[degrees\], or x and y \[m\].
+    pub(super) place: (f64, f64),
+    /// Height \[m\], of whatever kind the log has.
+    pub(super) height: Option<f64>,
+    /// Speed of the log's kind \[m/s\].
+    pub(super) speed: Option<f64>,
+    pub(super) satellites: Option<f64>,
+}
+
+/// What the speeds of a log are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum SpeedKind {
+    /// The length of a velocity to the north, the east and down: along the
+    /// slope.
+    Whole,
+    /// A column of speeds, taken as those along the slope.
+    Along,
+    /// Over ground: horizontal.
+    Ground,
+    /// The log has none: worked out from its positions, horizontal.
+    Positions,
+}
+
+/// A log.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Log {
+    pub(super) fixes: Vec<Fix>,
+    /// Whether places are longitudes and latitudes.
+    pub(super) is_geographic: bool,
+    pub(super) kind: SpeedKind,
+    /// The first row on the log's own clock.
+    pub(super) begin: Moment,
+    /// What was taken from the file, in sentences.
+    pub(super) said: Vec<String>,
+    /// What there is to doubt about it, in sentences.
+    pub(super) doubts: Vec<String>,
+}
+
+impl Log {
+    /// The moment that a user names, in seconds since the log's first row: a
+    /// number of such seconds, or a clock's time where the log has one.
+    pub(super) fn moment(&self, name: &str, text: &str) -> Result<f64> {
+        let wrong = |expected: &str| {
+            Error::input(format!(
+                "{name}: found {}; expected {expected}",
+                quoted(text)
+            ))
+        };
+        let Some(moment) = super::clock::moment(text, 1.0) else {
+            return Err(wrong(
+                "seconds since the log's first row, such as 71.5, or a time \
+                 of its clock, such as 07:51:22.5",
+            ));
+        };
+        if !moment.is_clock {
+            return Ok(moment.seconds);
+        }
+        if !self.begin.is_clock {
+            return Err(wrong(
+                "seconds since the log's first row, whose times are numbers \
+                 and no clock's: subtract its first time",
+            ));
+        }
+        // A time without a date is of the log's first day, or of the night
+        // that follows it.
+        let since = moment.seconds - self.begin.seconds;
+        let is_dated = moment.seconds > 2.0 * DAY;
+        Ok(if is_dated { since } else { since.rem_euclid(DAY) })
+    }
+}
