@@ -115,7 +115,7 @@ impl<'a, P: Program> Weighed<'a, P> {
     fn stands_for(&self, form: &Form, own_priors: bool) -> bool {
         let own_form = self.form();
         let alone = own_priors && self.program.is_named();
-        own_form.is_like(form) && (!alone || self.name == form.to_string())
+        own_form.is_like(form) && (!alone || own_form == *form)
     }
 
     /// About ln of its evidence in either way: without physics, and with a
@@ -335,19 +335,24 @@ fn doubly_decorated<P: Program>(all: &[Weighed<'_, P>]) -> Vec<Form> {
     grow.map(|form| Form { has_tails: true, ..form }).collect()
 }
 
-/// Whether it has more evidence than each simpler noise, in either way, and
-/// than its like with the priors of the named one: a noise that does not says
-/// the same in more parameters, or in other priors.
+/// Whether it has more evidence than each simpler noise, in either way, and on
+/// the whole than its like with the priors of the named one: a noise that does
+/// not says the same in more parameters, or in other priors.
 fn pays<P: Program>(one: &Weighed<'_, P>, all: &[Weighed<'_, P>]) -> bool {
     let form = one.form();
     let named = all.iter().find(|other| other.program.is_named());
     let memory = named.map(|named| named.form().memory);
     let is_stated = |form: &Form| Some(&form.memory) == memory.as_ref();
-    let simpler = all.iter().filter(|other| {
-        let other = other.form();
-        let is_like = is_stated(&other) && !is_stated(&form);
-        other.is_simpler_than(&form) || (is_like && other.is_like(&form))
-    });
+    let says_the_same = |other: &Weighed<'_, P>| {
+        let its = other.form();
+        (is_stated(&its) && !is_stated(&form) && its.is_like(&form))
+            && either_way(one.logs()) <= either_way(other.logs()) + MORE
+    };
+    if all.iter().any(says_the_same) {
+        return false;
+    }
+    let simpler =
+        all.iter().filter(|other| other.form().is_simpler_than(&form));
     let ([without, with], logs) = (most(simpler), one.logs());
     logs[0] > without + MORE || logs[1] > with + MORE
 }
