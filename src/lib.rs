@@ -129,6 +129,7 @@ pub mod reproduce;
 pub mod sbc;
 pub mod scalar;
 pub mod seed;
+pub(crate) mod spelling;
 
 /// Writes a model: its data, its unknowns, and how the data come about.
 ///

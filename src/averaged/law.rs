@@ -11,6 +11,7 @@ use crate::draws::{Draws, log_sum_exp, summarise};
 use crate::error::{Error, Result};
 use crate::infer::Progress;
 use crate::model::Assembled;
+use crate::physics::forces::Axis;
 use crate::report::{CalibrationReport, LawReport, ParameterReport};
 use crate::seed::Seed;
 
@@ -95,7 +96,7 @@ fn located(one: &Under<'_>, seed: Seed) -> Result<Located> {
     let none =
         none.ok_or_else(|| Error::inference("a force beside no fit"))?;
     let extent = one.program.event().extent();
-    let forces = locate_all(one.program, &extent, none, seed)?;
+    let forces = locate_all(one.program, &extent, &Axis::ALL, none, seed)?;
     let gains = forces.iter().map(|force| force.log_bayes_factor);
     let gain = log_sum_exp(gains) - (forces.len() as f64).ln();
     let more = |a: &&FreeForce, b: &&FreeForce| {

@@ -3,8 +3,7 @@
 use clap::Args;
 use serde_json::json;
 
-use super::answer::Answer;
-use super::calibrate::{doubted, pretty, wrapped};
+use super::answer::{Answer, pretty, wrapped};
 use super::progress::Told;
 use super::results::Output;
 use super::study::Read;
@@ -46,31 +45,29 @@ impl Row {
 }
 
 impl Arguments {
-    pub(super) fn run(&self, laws: &Laws) -> Result<Answer> {
+    pub(super) fn run(&self, laws: &Laws, told: &Told) -> Result<Answer> {
         let results =
             self.output.ready(&["bench.json"], self.subject.paths())?;
-        let Read { model, notes, warnings, .. } = self.subject.named(laws)?;
+        let Read { model, said, .. } = self.subject.named(laws)?;
         let posterior = Posterior::new(&model)?;
-        let told = Told::new();
         let mut rows = Vec::new();
         for entry in BACKENDS {
             let backend = self.work.backend(entry.name)?;
             let seed = Seed::new(self.work.seed);
-            let found = infer(backend.as_ref(), &posterior, seed, &told)?;
+            let found = infer(backend.as_ref(), &posterior, seed, told)?;
             rows.push(row(entry.name, found));
         }
-        drop(told);
+        told.finish();
         let name = model.event().name();
         let mut document = self.document(name, &rows);
-        (document["notes"], document["warnings"]) =
-            (json!(notes), json!(warnings));
+        said.write_to(&mut document);
         let document = pretty(&document);
         let wrote =
             results.write(|| Ok(vec![("bench.json", document.clone())]));
         let title = format!("{name}: {}, {}", model.friction(), model.noise());
         let text = match self.output.json {
             true => document,
-            false => tell(&title, &rows) + &doubted(&notes, &warnings),
+            false => tell(&title, &rows) + &said.lines(),
         };
         Ok(Answer::from(text).after(wrote))
     }

@@ -3,7 +3,7 @@
 use clap::Args;
 use serde_json::json;
 
-use super::answer::{Answer, Strict};
+use super::answer::{Answer, Strict, pretty, wrapped};
 use super::progress::Told;
 use super::results::Output;
 use super::study::Read;
@@ -32,6 +32,10 @@ pub(super) struct Arguments {
     /// modes
     #[arg(long, value_parser = with_draws)]
     backend: Option<String>,
+    /// Look quickly, to be made sure of later: at some 64 values, with 500
+    /// draws of each chain where --draws says nothing else
+    #[arg(long)]
+    quick: bool,
     /// Say what is known of the law's parameters when the rest of the physics
     /// is left open, too: with a force of free form in the model
     #[arg(long)]
@@ -47,21 +51,30 @@ fn with_draws(name: &str) -> Result<String, String> {
     backend_giving(name, purpose, |gives| gives.draws)
 }
 
+/// What is said of a calibration with few values and draws.
+const QUICK: &str =
+    "This is a quick look, to be made sure of without --quick.";
+
 /// What a calibration writes.
 const FILES: [&str; 3] = ["report.html", "calibration.json", "draws.csv"];
 
 impl Arguments {
-    pub(super) fn run(&self, laws: &Laws) -> Result<Answer> {
-        let subject =
-            Subject { thin: self.thin.clone(), ..self.subject.clone() };
+    pub(super) fn run(&self, laws: &Laws, told: &Told) -> Result<Answer> {
+        let thin = self.thin.quickly(self.quick);
+        let subject = Subject { thin, ..self.subject.clone() };
         let results = self.output.ready(&FILES, subject.paths())?;
-        let read = subject.read(laws)?;
+        let mut read = subject.read(laws)?;
+        if self.quick {
+            read.said.note([QUICK.to_owned()]);
+        }
         // Summed before the work, as they were read.
-        let inputs = read.inputs.clone();
-        let found = self.found(read)?;
+        let inputs = subject.inputs()?;
+        let found = self.found(read, told)?;
+        told.finish();
         let mut json = calibration_json(&found.report);
         json["inputs"] = json!(inputs);
         json["program"] = PROGRAM.into();
+        json["quick"] = self.quick.into();
         let json = pretty(&json);
         let wrote = results.write(|| {
             let draws = found.draws.to_csv();
@@ -76,24 +89,25 @@ impl Arguments {
         Ok(answer.after(wrote))
     }
 
-    fn found(&self, read: Read) -> Result<Calibration> {
-        let Read { model, infers_noise, notes, warnings, .. } = read;
+    fn found(&self, read: Read, told: &Told) -> Result<Calibration> {
+        let Read { model, infers_noise, said } = read;
+        let work = self.work.quickly(self.quick);
         let (backend, why) = match &self.backend {
-            Some(name) => (self.work.backend(name)?, None),
+            Some(name) => (work.backend(name)?, None),
             None => {
                 let Suited { backend, why } =
-                    suited(&model, infers_noise, &self.work.effort()?)?;
+                    suited(&model, infers_noise, &work.effort()?)?;
                 (backend, Some(why.to_owned()))
             }
         };
         let mut open = Open::default();
         (open.noise, open.rest) = (infers_noise, self.rest);
-        let (told, seed) = (Told::new(), self.work.seed);
+        let seed = self.work.seed;
         let mut found =
-            calibrate_open(&model, open, backend.as_ref(), seed, &told)?;
+            calibrate_open(&model, open, backend.as_ref(), seed, told)?;
         found.report.backend_why = why;
-        found.report.notes = notes;
-        found.report.warnings.splice(..0, warnings);
+        found.report.notes = said.notes;
+        found.report.warnings.splice(..0, said.warnings);
         Ok(found)
     }
 }
@@ -123,39 +137,5 @@ fn tell(found: &Calibration) -> String {
     );
     text.push('\n');
     text.push_str(&wrapped(&run, width));
-    text
-}
-
-/// What was noted and what was doubted of an event, behind an answer.
-pub(super) fn doubted(notes: &[String], warnings: &[String]) -> String {
-    let warnings = warnings.iter().map(|w| format!("Warning: {w}."));
-    let all: Vec<String> = notes.iter().cloned().chain(warnings).collect();
-    let width = width();
-    let lines: String = all.iter().map(|said| wrapped(said, width)).collect();
-    if lines.is_empty() { lines } else { format!("\n{lines}") }
-}
-
-/// A JSON document as it is printed and written.
-pub(super) fn pretty(document: &serde_json::Value) -> String {
-    format!("{document:#}\n")
-}
-
-/// A sentence broken into lines, the later ones indented.
-pub(super) fn wrapped(sentence: &str, width: usize) -> String {
-    let mut text = String::new();
-    let mut column = 0;
-    for word in sentence.split_whitespace() {
-        let length = word.chars().count();
-        if column > 0 && column + 1 + length > width {
-            text.push_str("\n  ");
-            column = 2;
-        } else if column > 0 {
-            text.push(' ');
-            column += 1;
-        }
-        text.push_str(word);
-        column += length;
-    }
-    text.push('\n');
     text
 }

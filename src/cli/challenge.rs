@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::answer;
-use super::calibrate::{pretty, wrapped};
+use super::answer::{pretty, wrapped};
 use super::pace::Pace;
+use super::progress::Told;
 use super::results::{Results, folder};
 use super::study::assemble;
 use super::{at_least_one, width};
@@ -64,10 +65,10 @@ const NOISES: [f64; 3] = [0.1, 0.3, 0.9];
 const SECONDS: [f64; 2] = [8.0, 20.0];
 
 impl Arguments {
-    pub(super) fn run(&self) -> Result<answer::Answer> {
+    pub(super) fn run(&self, told: &Told) -> Result<answer::Answer> {
         match &self.power {
-            Some(mechanism) => self.study(mechanism),
-            None => self.score(),
+            Some(mechanism) => self.study(mechanism, told),
+            None => self.score(told),
         }
     }
 
@@ -76,17 +77,19 @@ impl Arguments {
     }
 
     /// The diagnoses of all cases.
-    fn scored(&self, all: &[Case]) -> Result<Scored> {
+    fn scored(&self, all: &[Case], told: &Told) -> Result<Scored> {
         let each = SECONDS[usize::from(self.recordings == 2)];
-        let told = Pace::begun(all.len(), each);
-        run(all, &|case| answer(case, self.seed), true, &told)
+        let pace = Pace::begun(all.len(), each, told);
+        let scored = run(all, &|case| answer(case, self.seed), true, &pace);
+        told.finish();
+        scored
     }
 
-    fn score(&self) -> Result<answer::Answer> {
+    fn score(&self, told: &Told) -> Result<answer::Answer> {
         let files = ["challenge.html", "challenge.json"];
         let results = Results::ready(self.out.as_deref(), &files, &[])?;
         let all = cases(self.cases, self.seed, self.mix(), self.errors)?;
-        let scored = self.scored(&all)?;
+        let scored = self.scored(&all, told)?;
         let json = pretty(&challenge_json(&scored));
         let wrote = results.write(|| {
             let page = page(&scored, self.mix(), self.errors, self.seed);
@@ -102,12 +105,12 @@ impl Arguments {
         Ok(answer::Answer::from(text).after(wrote))
     }
 
-    fn study(&self, mechanism: &str) -> Result<answer::Answer> {
+    fn study(&self, mechanism: &str, told: &Told) -> Result<answer::Answer> {
         let results =
             Results::ready(self.out.as_deref(), &["power.html"], &[])?;
         let count = self.cases.div_ceil(SIZES.len() * NOISES.len());
         let all = power_cases(mechanism, &SIZES, &NOISES, count, self.seed)?;
-        let scored = self.scored(&all)?;
+        let scored = self.scored(&all, told)?;
         let tables: Vec<PowerTable> = PowerTable::of(&scored.outcomes);
         let wrote = results.write(|| {
             Ok(vec![("power.html", power_page(&tables, self.seed))])

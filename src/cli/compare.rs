@@ -4,12 +4,12 @@
 use clap::Args;
 use serde_json::json;
 
-use super::answer::Answer;
-use super::calibrate::{doubted, pretty, wrapped};
+use super::answer::{Answer, pretty, wrapped};
 use super::predictive::{self, Predicted};
 use super::progress::Told;
 use super::results::Output;
-use super::study::{NoDepth, assemble, said};
+use super::said::Said;
+use super::study::{NoDepth, assemble};
 use super::{Subject, Work, at_least_one, backend_giving, width};
 use crate::draws::{Lfo, Loo};
 use crate::elpd;
@@ -108,7 +108,7 @@ fn ahead(compared: &[Compared]) -> Vec<Predicted<'_>> {
 }
 
 impl Arguments {
-    pub(super) fn run(&self, laws: &Laws) -> Result<Answer> {
+    pub(super) fn run(&self, laws: &Laws, told: &Told) -> Result<Answer> {
         if self.models.len() < 2 {
             return Err(Error::input(
                 "a comparison needs two models or more: give --model \
@@ -119,28 +119,25 @@ impl Arguments {
         let results = self.output.ready(&files, self.subject.paths())?;
         let file = self.subject.load(laws)?;
         let event = file.event.name().to_owned();
-        let (mut notes, warnings) = said(&file);
-        let told = Told::new();
+        let mut said = Said::of(&file);
         let compared = self
             .models
             .iter()
-            .map(|text| self.compared(text, laws, &told))
+            .map(|text| self.compared(text, laws, told))
             .collect::<Result<Vec<_>>>()?;
-        drop(told);
+        told.finish();
         let depth = NoDepth::of(&file);
         for c in &compared {
-            notes.extend(depth.note(&c.friction, laws));
+            said.note(depth.note(&c.friction, laws));
         }
-        notes.dedup();
         let mut document = self.document(&event, &compared);
-        (document["notes"], document["warnings"]) =
-            (json!(notes), json!(warnings));
+        said.write_to(&mut document);
         let document = pretty(&document);
         let wrote =
             results.write(|| Ok(vec![("comparison.json", document.clone())]));
         let text = match self.output.json {
             true => document,
-            false => tell(&event, &compared) + &doubted(&notes, &warnings),
+            false => tell(&event, &compared) + &said.lines(),
         };
         Ok(Answer::from(text).after(wrote))
     }

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Map, Value};
 
-use super::answer::{Answer, Strict};
-use super::calibrate::pretty;
+use super::answer::{Answer, Strict, pretty};
 use super::progress::Told;
 use super::results::Output;
+use super::said::Said;
 use super::study::Read;
 use super::thin::Thin;
 use super::{Subject, width};
@@ -50,8 +50,12 @@ pub(super) struct Arguments {
     thin: Thin,
     /// Diagnose again at half the recordings' rate, and warn where that
     /// changes verdict or group; takes twice the time
-    #[arg(long)]
+    #[arg(long, conflicts_with = "quick")]
     check_rate: bool,
+    /// Look quickly, to be made sure of later: at some 64 values, under one
+    /// noise, at one mechanism at a time
+    #[arg(long)]
+    quick: bool,
     /// Seed of every random draw
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -92,13 +96,12 @@ struct Found {
 type Files = Vec<(PathBuf, String)>;
 
 impl Arguments {
-    pub(super) fn run(&self, laws: &Laws) -> Result<Answer> {
-        let subjects = self.subjects(&self.thin);
+    pub(super) fn run(&self, laws: &Laws, told: &Told) -> Result<Answer> {
+        let subjects = self.subjects(&self.thin.quickly(self.quick));
         let results = self.output.ready(&FILES, &self.events)?;
-        let told = Told::new();
         let Found { found, labels, inputs } =
-            self.found(&subjects, laws, &told)?;
-        drop(told);
+            self.found(&subjects, laws, told)?;
+        told.finish();
         let mut json = found.json();
         json["inputs"] = Value::Object(inputs);
         let mut names = FILES.to_vec();
@@ -134,15 +137,17 @@ impl Arguments {
         let halved = self.subjects(&self.thin.halved());
         let halved =
             self.check_rate.then(|| read_all(&halved, laws)).transpose()?;
-        let (notes, warnings) = notes(&read);
-        let sums: Vec<_> = read.iter().map(|one| one.inputs.clone()).collect();
+        let said = Said::of_all(read.iter().map(|one| &one.said));
+        // Summed before the work, as they were read.
+        let sums =
+            subjects.iter().map(Subject::inputs).collect::<Result<_>>()?;
         let (mut found, labels) = self.diagnose(read, told)?;
-        found.notes = notes;
+        found.notes = said.notes;
         if let Some(read) = halved {
             let (again, _) = self.diagnose(read, told)?;
             found.check_rate(&again);
         }
-        found.warnings.splice(..0, warnings);
+        found.warnings.splice(..0, said.warnings);
         let inputs = inputs(sums, &labels);
         Ok(Found { found, labels, inputs })
     }
@@ -181,6 +186,7 @@ impl Arguments {
             };
             let mut options = Options::of_all(&together, self.seed);
             (options.odds, options.infers_noise) = (odds(), infers_noise);
+            options.quick = self.quick;
             let sharing =
                 if self.pooled { Sharing::Pooled } else { Sharing::Shared };
             let found = diagnose_together(&together, sharing, &options, told)?;
@@ -190,27 +196,10 @@ impl Arguments {
             models.pop().ok_or_else(|| Error::input("no event was given"))?;
         let mut options = Options::of(&model, self.seed);
         (options.odds, options.infers_noise) = (odds(), infers_noise);
+        options.quick = self.quick;
         let found = diagnose(&model, model.event(), &options, told)?;
         Ok((found, Vec::new()))
     }
-}
-
-/// What to know of how all events were read, and what is doubtful of them;
-/// what holds for several is said once.
-fn notes(read: &[Read]) -> (Vec<String>, Vec<String>) {
-    let (mut notes, mut warnings) = (Vec::new(), Vec::new());
-    for one in read {
-        for (all, own) in
-            [(&mut notes, &one.notes), (&mut warnings, &one.warnings)]
-        {
-            for said in own {
-                if !all.contains(said) {
-                    all.push(said.clone());
-                }
-            }
-        }
-    }
-    (notes, warnings)
 }
 
 fn read_all(subjects: &[Subject], laws: &Laws) -> Result<Vec<Read>> {

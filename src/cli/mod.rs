@@ -8,15 +8,19 @@ mod bench;
 mod calibrate;
 mod challenge;
 mod compare;
+mod completions;
 mod diagnose;
+mod examples;
 #[cfg(feature = "import")]
 mod import;
+mod man;
 mod new;
 mod pace;
 mod predictive;
 mod progress;
 mod reproduce;
 mod results;
+mod said;
 mod simulate;
 mod study;
 mod thin;
@@ -28,6 +32,7 @@ use std::process::ExitCode;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use self::answer::Answer;
+use self::progress::Told;
 use self::thin::Thin;
 use crate::error::{Error, Result};
 use crate::infer::{BACKENDS, Backend, Bridge, Effort, Gives, Smc, backend};
@@ -35,33 +40,57 @@ use crate::physics::friction::Laws;
 
 /// Calibrates avalanche friction laws from recordings, in a Bayesian way.
 #[derive(Debug, Parser)]
-#[command(name = "couloir", version, about, max_term_width = 80)]
+#[command(
+    name = "couloir",
+    version = env!("COULOIR_VERSION"),
+    about,
+    max_term_width = 80,
+    after_help = examples::ALL
+)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
+    /// Tell no progress; errors and warnings are told all the same
+    #[arg(long, short, global = true)]
+    quiet: bool,
 }
 
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Calibrate a friction law from a recording
+    #[command(after_help = examples::CALIBRATE)]
     Calibrate(calibrate::Arguments),
     /// Compare models by their evidence and by how well they predict
+    #[command(after_help = examples::COMPARE)]
     Compare(compare::Arguments),
     /// Find where recording and model differ and what was left out
+    #[command(after_help = examples::DIAGNOSE)]
     Diagnose(diagnose::Arguments),
     /// Run the motion with given parameter values
+    #[command(after_help = examples::SIMULATE)]
     Simulate(simulate::Arguments),
     /// Write a commented event to start from
+    #[command(after_help = examples::NEW)]
     New(new::Arguments),
     /// Make an event of a GNSS log, a terrain model and a path
     #[cfg(feature = "import")]
+    #[command(after_help = examples::IMPORT)]
     Import(import::Arguments),
     /// Run every backend on an event, side by side
+    #[command(after_help = examples::BENCH)]
     Bench(bench::Arguments),
     /// Diagnose events that hide one effect each, and score the answers
+    #[command(after_help = examples::CHALLENGE)]
     Challenge(challenge::Arguments),
     /// Compute the study of Heredia et al. (2020) again
+    #[command(after_help = examples::REPRODUCE)]
     Reproduce(reproduce::Arguments),
+    /// Print what a shell completes this command with
+    #[command(after_help = examples::COMPLETIONS)]
+    Completions(completions::Arguments),
+    /// Print or write the manual pages
+    #[command(after_help = examples::MAN)]
+    Man(man::Arguments),
 }
 
 /// Which event, and what to change of its model.
@@ -84,7 +113,7 @@ struct Subject {
 }
 
 /// How much work to do, and from which seed.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 struct Work {
     /// Independent chains
     #[arg(long, default_value_t = 4, value_parser = at_least_one)]
@@ -102,7 +131,23 @@ struct Work {
     seed: u64,
 }
 
+/// How many draws of a chain, and steps before them, make a quick look.
+const QUICK: [usize; 2] = [500, 1_000];
+
 impl Work {
+    /// The same, little where that has to do and nothing else was asked for.
+    fn quickly(&self, quick: bool) -> Self {
+        let [draws, warmup] = QUICK;
+        match quick {
+            true => Self {
+                draws: self.draws.or(Some(draws)),
+                warmup: self.warmup.min(warmup),
+                ..self.clone()
+            },
+            false => self.clone(),
+        }
+    }
+
     fn effort(&self) -> Result<Effort> {
         let (chains, warmup) = (self.chains, self.warmup);
         let draws = self.draws.unwrap_or(Effort::new().draws);
@@ -176,12 +221,12 @@ pub fn main() -> ExitCode {
 /// }
 /// ```
 pub fn main_with(laws: &Laws) -> ExitCode {
-    let matches = with_laws(Cli::command(), laws).get_matches();
+    let matches = command_of(laws).get_matches();
     let cli = match Cli::from_arg_matches(&matches) {
         Ok(cli) => cli,
         Err(error) => error.exit(),
     };
-    match cli.command.run(laws) {
+    match cli.command.run(laws, &Told::new(cli.quiet)) {
         Ok(answer) => end(&answer),
         Err(error) => refuse(&error),
     }
@@ -194,18 +239,20 @@ fn refuse(error: &Error) -> ExitCode {
 }
 
 impl Command {
-    fn run(&self, laws: &Laws) -> Result<Answer> {
+    fn run(&self, laws: &Laws, told: &Told) -> Result<Answer> {
         match self {
-            Self::Calibrate(arguments) => arguments.run(laws),
-            Self::Compare(arguments) => arguments.run(laws),
-            Self::Diagnose(arguments) => arguments.run(laws),
-            Self::Challenge(arguments) => arguments.run(),
+            Self::Calibrate(arguments) => arguments.run(laws, told),
+            Self::Compare(arguments) => arguments.run(laws, told),
+            Self::Diagnose(arguments) => arguments.run(laws, told),
+            Self::Challenge(arguments) => arguments.run(told),
             Self::Simulate(arguments) => arguments.run(laws),
             Self::New(arguments) => arguments.run().map(Answer::from),
             #[cfg(feature = "import")]
             Self::Import(arguments) => arguments.run(),
-            Self::Bench(arguments) => arguments.run(laws),
-            Self::Reproduce(arguments) => arguments.run(),
+            Self::Bench(arguments) => arguments.run(laws, told),
+            Self::Reproduce(arguments) => arguments.run(told),
+            Self::Completions(arguments) => arguments.run(command_of(laws)),
+            Self::Man(arguments) => arguments.run(command_of(laws)),
         }
     }
 }
@@ -229,15 +276,16 @@ fn end(answer: &Answer) -> ExitCode {
     })
 }
 
-/// Lists the laws in the help of every `--friction`, a user's own included.
-fn with_laws(command: clap::Command, laws: &Laws) -> clap::Command {
+/// The command, with the laws in the help of every `--friction`, a user's own
+/// included.
+fn command_of(laws: &Laws) -> clap::Command {
     let names: Vec<&str> = laws.iter().map(|law| law.name()).collect();
     let help = format!(
         "Friction law instead of the event's: none, or one or a sum of {}, \
          such as \"coulomb + turbulent\"",
         names.join(", ")
     );
-    command.mut_subcommands(|subcommand| {
+    Cli::command().mut_subcommands(|subcommand| {
         let takes_one =
             subcommand.get_arguments().any(|a| a.get_id() == "friction");
         if !takes_one {

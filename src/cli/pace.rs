@@ -4,14 +4,13 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-use super::complain;
 use super::progress::Told;
 use crate::infer::Progress;
 
 /// Progress of cases that take about as long as each other.
 #[derive(Debug)]
-pub(super) struct Pace {
-    told: Told,
+pub(super) struct Pace<'t> {
+    told: &'t Told,
     begun: Instant,
     cases: u64,
     done: AtomicU64,
@@ -19,12 +18,12 @@ pub(super) struct Pace {
     measured_at: u64,
 }
 
-impl Pace {
+impl<'t> Pace<'t> {
     /// Says what there is to do, at so many seconds a case on one processor.
-    pub(super) fn begun(cases: usize, each: f64) -> Self {
+    pub(super) fn begun(cases: usize, each: f64, told: &'t Told) -> Self {
         let threads = rayon::current_num_threads();
         let seconds = each * cases.div_ceil(threads) as f64;
-        complain(&format!(
+        told.say(&format!(
             "{} to diagnose on {}, at about {each:.0} s each on one that is \
              free: about {}",
             plural(cases, "case"),
@@ -32,7 +31,7 @@ impl Pace {
             duration(seconds)
         ));
         Self {
-            told: Told::new(),
+            told,
             begun: Instant::now(),
             cases: cases as u64,
             done: AtomicU64::new(0),
@@ -41,7 +40,7 @@ impl Pace {
     }
 }
 
-impl Progress for Pace {
+impl Progress for Pace<'_> {
     fn begin(&self, what: &str, steps: Option<u64>) {
         self.told.begin(what, steps);
     }
@@ -56,7 +55,7 @@ impl Progress for Pace {
         }
         let spent = self.begun.elapsed().as_secs_f64();
         let left = spent / done as f64 * (self.cases - done) as f64;
-        complain(&format!(
+        self.told.say(&format!(
             "{done} of {} done in {}: about {} more",
             plural(self.cases as usize, "case"),
             duration(spent),

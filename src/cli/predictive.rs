@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::calibrate::wrapped;
+use super::answer::wrapped;
 use crate::draws::{Lfo, Loo, sum_and_error};
 use crate::elpd::difference;
 

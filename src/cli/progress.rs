@@ -1,30 +1,54 @@
-//! Progress: a bar on a terminal, plain lines otherwise.
+//! Progress: a bar on a terminal, plain lines otherwise, nothing where that
+//! was asked for.
 
 use std::io::IsTerminal;
 use std::sync::Mutex;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::complain;
 use crate::infer::Progress;
 
 /// Tells on the standard error stream how far an inference has come.
 #[derive(Debug)]
 pub(super) struct Told {
     bar: Mutex<ProgressBar>,
-    terminal: bool,
+    way: Way,
+}
+
+/// How progress is told.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Way {
+    Bar,
+    Lines,
+    Quiet,
 }
 
 impl Told {
-    pub(super) fn new() -> Self {
-        Self {
-            bar: Mutex::new(ProgressBar::hidden()),
-            terminal: std::io::stderr().is_terminal(),
-        }
+    pub(super) fn new(quiet: bool) -> Self {
+        let way = match quiet {
+            true => Way::Quiet,
+            false if std::io::stderr().is_terminal() => Way::Bar,
+            false => Way::Lines,
+        };
+        Self { bar: Mutex::new(ProgressBar::hidden()), way }
     }
 
     /// Whether a bar shows it.
     pub(super) fn is_bar(&self) -> bool {
-        self.terminal
+        self.way == Way::Bar
+    }
+
+    /// Says a line, unless nothing is to be told.
+    pub(super) fn say(&self, line: &str) {
+        if self.way != Way::Quiet {
+            complain(line);
+        }
+    }
+
+    /// Clears the bar: the work is done.
+    pub(super) fn finish(&self) {
+        self.with_bar(|bar| bar.finish_and_clear());
     }
 
     fn with_bar(&self, work: impl FnOnce(&mut ProgressBar)) {
@@ -36,14 +60,14 @@ impl Told {
 
 impl Drop for Told {
     fn drop(&mut self) {
-        self.with_bar(|bar| bar.finish_and_clear());
+        self.finish();
     }
 }
 
 impl Progress for Told {
     fn begin(&self, what: &str, steps: Option<u64>) {
-        if !self.terminal {
-            super::complain(&format!("{what} ..."));
+        if !self.is_bar() {
+            self.say(&format!("{what} ..."));
             return;
         }
         self.with_bar(|bar| {
@@ -67,7 +91,7 @@ impl Progress for Told {
     }
 
     fn advance(&self, steps: u64) {
-        if self.terminal {
+        if self.is_bar() {
             self.with_bar(|bar| bar.inc(steps));
         }
     }

@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::answer::Answer;
-use super::calibrate::{pretty, wrapped};
+use super::answer::{Answer, pretty, wrapped};
 use super::progress::Told;
 use super::results::{Results, folder};
 use super::width;
@@ -34,11 +33,10 @@ const FILES: [&str; 4] =
     ["reproduction.html", "reproduction.json", "m0.html", "m1.html"];
 
 impl Arguments {
-    pub(super) fn run(&self) -> Result<Answer> {
+    pub(super) fn run(&self, told: &Told) -> Result<Answer> {
         let results = Results::ready(self.out.as_deref(), &FILES, &[])?;
-        let told = Told::new();
-        let found = reproduce(self.samples, self.seed, &told)?;
-        drop(told);
+        let found = reproduce(self.samples, self.seed, told)?;
+        told.finish();
         let json = pretty(&reproduction_json(&found));
         let wrote = results.write(|| {
             let [m0, m1] = found.case.reports.each_ref().map(report::page);

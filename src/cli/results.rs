@@ -59,9 +59,7 @@ impl<'a> Results<'a> {
         events: &[PathBuf],
     ) -> Result<Self> {
         if let Some(folder) = folder {
-            let events: Vec<&Path> =
-                events.iter().map(PathBuf::as_path).collect();
-            prepare_run(folder, names, &events)
+            prepare_run(folder, names, events)
                 .map_err(|error| error.within("--out"))?;
         }
         Ok(Self { folder })

@@ -4,8 +4,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::Subject;
-use super::answer::Answer;
-use super::calibrate::{doubted, pretty};
+use super::answer::{Answer, pretty};
 use super::results::Output;
 use super::study::Read;
 use crate::error::{Error, Result, Stop};
@@ -30,7 +29,7 @@ impl Arguments {
     pub(super) fn run(&self, laws: &Laws) -> Result<Answer> {
         let files = ["simulation.csv", "simulation.json"];
         let results = self.output.ready(&files, self.subject.paths())?;
-        let Read { model, notes, warnings, .. } = self.subject.read(laws)?;
+        let Read { model, said, .. } = self.subject.read(laws)?;
         let values = self.values(&model)?;
         let times = times(&model);
         let no_flow = |stop| match stop {
@@ -43,8 +42,7 @@ impl Arguments {
         let rest = model.rest(&values).map_err(no_flow)?;
         let rest = rest.map(|r| (r.time.value(), r.distance.value()));
         let mut document = document(&model, &values, &times, &states, rest);
-        (document["notes"], document["warnings"]) =
-            (json!(notes), json!(warnings));
+        said.write_to(&mut document);
         let document = pretty(&document);
         let wrote = results.write(|| {
             let texts = [csv(&times, &states), document.clone()];
@@ -53,8 +51,7 @@ impl Arguments {
         let text = match self.output.json {
             true => document,
             false => {
-                tell(&model, &values, &times, &states, rest)
-                    + &doubted(&notes, &warnings)
+                tell(&model, &values, &times, &states, rest) + &said.lines()
             }
         };
         Ok(Answer::from(text).after(wrote))

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use super::Subject;
+use super::said::Said;
 use crate::error::{Error, Result};
 use crate::io::{self, EventFile};
 use crate::mechanism::catalogue::find;
@@ -17,18 +18,18 @@ pub(super) struct Read {
     pub(super) model: Assembled,
     /// Whether its noise is to be inferred, and stands in for another.
     pub(super) infers_noise: bool,
-    /// What to know of how it was read, and how its recordings were thinned.
-    pub(super) notes: Vec<String>,
-    /// What could be true of it and hardly is.
-    pub(super) warnings: Vec<String>,
-    /// The checksums of the files that were read, by their names.
-    pub(super) inputs: BTreeMap<String, String>,
+    pub(super) said: Said,
 }
 
 impl Subject {
     /// What it is read from; nothing where the event is the embedded one.
     pub(super) fn paths(&self) -> &[PathBuf] {
         self.event.as_slice()
+    }
+
+    /// The checksums of the files that it is read from, by their names.
+    pub(super) fn inputs(&self) -> Result<BTreeMap<String, String>> {
+        io::inputs(self.event.as_deref())
     }
 
     /// The event, the embedded one where none was named.
@@ -72,16 +73,15 @@ impl Subject {
             None => file.infers_noise,
         };
         let priors = file.priors.clone();
-        let (mut notes, warnings) = said(&file);
+        let mut said = Said::of(&file);
         let depth = NoDepth::of(&file);
         let model = assemble(file, laws, friction, noise, None)?;
-        notes.extend(depth.note(&model.friction(), laws));
-        notes.extend(thinned);
+        said.note(depth.note(&model.friction(), laws));
+        said.note(thinned);
         if own {
             model.check_priors(&priors).map_err(|e| e.within(place))?;
         }
-        let inputs = io::inputs(self.event.as_deref())?;
-        Ok(Read { model, infers_noise, notes, warnings, inputs })
+        Ok(Read { model, infers_noise, said })
     }
 
     /// The noise that the command line names; what stands in where it is to be
@@ -128,11 +128,6 @@ impl Subject {
             io::Correction { friction, noise, mechanisms, unused, recording };
         io::corrected(self.event.as_deref(), &correction)
     }
-}
-
-/// What was noted and what was doubted when an event was read.
-pub(super) fn said(file: &EventFile) -> (Vec<String>, Vec<String>) {
-    (file.notes.clone(), file.warnings.clone())
 }
 
 /// Whether an event is without a flow depth.

@@ -5,6 +5,9 @@ use clap::Args;
 use crate::error::Result;
 use crate::observe::{Event, Thinning};
 
+/// How many values, about, are few: a diagnosis of so many takes a second.
+const FEW: usize = 64;
+
 /// How to thin recordings.
 #[derive(Debug, Clone, Default, Args)]
 pub(super) struct Thin {
@@ -21,6 +24,9 @@ pub(super) struct Thin {
     /// To half the rate that is left after that.
     #[arg(skip)]
     halved: bool,
+    /// To few values, where no rate was given.
+    #[arg(skip)]
+    quick: bool,
 }
 
 fn rate(text: &str) -> Result<f64, String> {
@@ -41,17 +47,30 @@ impl Thin {
         Self { halved: true, ..self.clone() }
     }
 
+    /// The same, to few values where that is wanted and no rate was given.
+    pub(super) fn quickly(&self, quick: bool) -> Self {
+        Self { quick: quick && self.rate.is_none(), ..self.clone() }
+    }
+
     /// Whether recordings stay as they are.
     pub(super) fn is_none(&self) -> bool {
-        self.rate.is_none() && !self.halved
+        self.rate.is_none() && !self.halved && !self.quick
     }
 
     /// The event with thinner recordings, and a sentence for each.
     pub(super) fn apply(&self, event: &Event) -> Result<(Event, Vec<String>)> {
         let how = self.thin.unwrap_or_default();
         let (mut event, mut said) = (event.clone(), Vec::new());
-        if let Some(rate) = self.rate {
-            let (thin, done) = event.thinned(rate, how)?;
+        let few = event.recordings().next().map(|series| {
+            series.rate() * FEW as f64 / series.len().max(FEW) as f64
+        });
+        let thinned = match (self.rate, few) {
+            (Some(rate), _) => Some(event.thinned(rate, how)?),
+            // With gaps all over there may be no means of so many.
+            (None, Some(few)) if self.quick => event.thinned(few, how).ok(),
+            _ => None,
+        };
+        if let Some((thin, done)) = thinned {
             said.extend(done.iter().map(ToString::to_string));
             event = thin;
         }

@@ -13,8 +13,9 @@ use crate::diagnosis::decide::judge::{
     verdict,
 };
 use crate::diagnosis::decide::noise::{judged_noises, taken};
+use crate::diagnosis::evidence::attribute::Care;
 use crate::diagnosis::evidence::fit::Fit;
-use crate::diagnosis::evidence::noises::noises;
+use crate::diagnosis::evidence::noises::{named_alone, noises};
 use crate::diagnosis::evidence::table::{Row, Table};
 use crate::diagnosis::findings::{
     Diagnosis, Judged, JudgedNoise, LawParameters, ParameterSummary, Rest,
@@ -140,8 +141,14 @@ impl<P: Program> Subject<'_, P> {
     ) -> Result<Table<'_, P>> {
         progress.begin("weighing noises", None);
         let (program, extent) = (self.program, &self.extent);
-        let noises = noises(program, &options.noise, extent, seed.child(1))?;
-        Table::of(noises, extent, &self.all, seed.child(0), progress)
+        let (named, survey) = (&options.noise, seed.child(1));
+        let (noises, care) = match options.quick {
+            true => {
+                (named_alone(program, named, extent, survey)?, Care::QUICK)
+            }
+            false => (noises(program, named, extent, survey)?, Care::DECIDING),
+        };
+        Table::of(noises, extent, &self.all, care, seed.child(0), progress)
     }
 
     /// The row of the noise that the model goes on with, all fits made.
@@ -155,7 +162,8 @@ impl<P: Program> Subject<'_, P> {
         let named = table.named().filter(|_| !options.infers_noise);
         let row = taken(named, &self.log_of_noises(table, options));
         let seed = seed.child(2);
-        table.rows[row].fill(&self.extent, &self.all, seed, progress)?;
+        let (care, row_of) = (Care::DECIDING, &mut table.rows[row]);
+        row_of.fill(&self.extent, &self.all, care, seed, progress)?;
         // Of those that have all fits by now.
         let mut logs = self.log_of_noises(table, options);
         for (log, row) in logs.iter_mut().zip(&table.rows) {
@@ -199,6 +207,7 @@ impl<P: Program> Subject<'_, P> {
         let rivals = decision.rivals(all, none);
         let mut diagnosis = Diagnosis {
             verdict: *verdict,
+            quick: options.quick,
             rivals,
             separating: separating(&group, judged),
             group,
@@ -214,7 +223,9 @@ impl<P: Program> Subject<'_, P> {
             ..compared
         };
         let forces = &row.found()?.forces;
-        diagnosis.rest = self.rest(row, after.as_ref(), seed)?;
+        if !options.quick {
+            diagnosis.rest = self.rest(row, after.as_ref(), seed)?;
+        }
         self.write_out(&mut diagnosis, chosen.as_ref(), forces, options);
         diagnosis.forces = forces.clone();
         diagnosis.doubts = diagnosis.warnings.clone();
@@ -272,6 +283,7 @@ impl<P: Program> Subject<'_, P> {
             judged: &judged,
             beforehand,
             elsewhere: table.beside(row),
+            singly: options.quick,
             seed,
         };
         let chosen = choice.choose(verdict)?;

@@ -20,6 +20,8 @@ pub struct Diagnosis {
     /// Whether evidence and fit disagree, or the recording does not rule out
     /// that nothing is missing.
     pub weak: bool,
+    /// Whether a quick look had to do.
+    pub quick: bool,
     /// Where simulation and recording differ.
     pub mismatch: Vec<Mismatch>,
     /// Everything that was weighed, most probable first.

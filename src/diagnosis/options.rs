@@ -16,6 +16,9 @@ use crate::prior::AnyPrior;
 pub struct Options {
     /// Where all random numbers start.
     pub seed: u64,
+    /// Whether a quick look has to do: under the named noise alone, each
+    /// mechanism by itself, evidences rough.
+    pub quick: bool,
     /// The user's odds.
     pub odds: Odds,
     /// The friction law's name, a sum of blocks: "coulomb + turbulent"; empty
@@ -48,6 +51,12 @@ impl Options {
     #[must_use]
     pub fn with_catalogue(self, catalogue: Catalogue) -> Self {
         Self { catalogue, ..self }
+    }
+
+    /// The same for a quick look.
+    #[must_use]
+    pub fn quickly(self) -> Self {
+        Self { quick: true, ..self }
     }
 
     /// Those of a model put together from an event file.

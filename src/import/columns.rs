@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 
 use super::role::Role;
 use crate::error::{Error, Result};
-use crate::io::{either, nearest, quoted};
+use crate::io::{either, quoted};
+use crate::spelling::nearest;
 
 /// A column that a user named.
 #[derive(Debug, Clone, PartialEq)]

@@ -19,9 +19,9 @@ const SWISS: &str = "+lat_0=46.9524055555556 +lon_0=7.43958333333333 +k_0=1 \
 
 const ETRS: &str = "+ellps=GRS80 +towgs84=0,0,0,0,0,0,0";
 
-/// Projections by their EPSG codes, with their datum. The zones of UTM are
-/// worked out.
-const KNOWN: [(u32, &str, &str); 10] = [
+/// Projections by their EPSG codes, with their datum. The Austrian meridian
+/// strips and the zones of UTM are worked out.
+const KNOWN: [(u32, &str, &str); 4] = [
     (2056, "+proj=somerc +x_0=2600000 +y_0=1200000", SWISS),
     (
         2154,
@@ -30,42 +30,6 @@ const KNOWN: [(u32, &str, &str); 10] = [
         ETRS,
     ),
     (21781, "+proj=somerc +x_0=600000 +y_0=200000", SWISS),
-    (
-        31254,
-        "+proj=tmerc +lat_0=0 +lon_0=10.3333333333333 +k=1 +x_0=0 \
-         +y_0=-5000000",
-        MGI,
-    ),
-    (
-        31255,
-        "+proj=tmerc +lat_0=0 +lon_0=13.3333333333333 +k=1 +x_0=0 \
-         +y_0=-5000000",
-        MGI,
-    ),
-    (
-        31256,
-        "+proj=tmerc +lat_0=0 +lon_0=16.3333333333333 +k=1 +x_0=0 \
-         +y_0=-5000000",
-        MGI,
-    ),
-    (
-        31257,
-        "+proj=tmerc +lat_0=0 +lon_0=10.3333333333333 +k=1 +x_0=150000 \
-         +y_0=-5000000",
-        MGI,
-    ),
-    (
-        31258,
-        "+proj=tmerc +lat_0=0 +lon_0=13.3333333333333 +k=1 +x_0=450000 \
-         +y_0=-5000000",
-        MGI,
-    ),
-    (
-        31259,
-        "+proj=tmerc +lat_0=0 +lon_0=16.3333333333333 +k=1 +x_0=750000 \
-         +y_0=-5000000",
-        MGI,
-    ),
     (
         31287,
         "+proj=lcc +lat_1=49 +lat_2=46 +lat_0=47.5 +lon_0=13.3333333333333 \
@@ -99,8 +63,8 @@ impl Crs {
             Some((code, plane)) => Self::of(&plane, format!("EPSG:{code}")),
             None => Err(Error::input(format!(
                 "--crs: found {}; expected one of EPSG:{}, 25828 to 25838, \
-                 32601 to 32660 and 32701 to 32760, or a PROJ string such as \
-                 \"+proj=utm +zone=32 +datum=WGS84\"",
+                 31254 to 31259, 32601 to 32660 and 32701 to 32760, or a PROJ \
+                 string such as \"+proj=utm +zone=32 +datum=WGS84\"",
                 quoted(text),
                 KNOWN.map(|known| known.0.to_string()).join(", ")
             ))),
@@ -159,6 +123,7 @@ fn definition(code: u32) -> Option<String> {
     let wgs = "+ellps=WGS84 +towgs84=0,0,0,0,0,0,0";
     match code {
         25828..=25838 => Some(utm(code - 25800, ETRS)),
+        31254..=31259 => Some(meridian_strip(code)),
         32601..=32660 => Some(utm(code - 32600, wgs)),
         32701..=32760 => Some(utm(code - 32700, &format!("+south {wgs}"))),
         _ => {
@@ -166,6 +131,19 @@ fn definition(code: u32) -> Option<String> {
             found.next().map(|(_, plane, datum)| format!("{plane} {datum}"))
         }
     }
+}
+
+/// An Austrian meridian strip: about 10, 13 or 16 degrees and 20 minutes east
+/// of Greenwich, first as Gauss and Krueger have it (31254 to 31256), then with
+/// eastings that tell the strips apart (31257 to 31259).
+fn meridian_strip(code: u32) -> String {
+    let strip = (code - 31254) % 3;
+    let degrees = f64::from(10 + 3 * strip) + 1.0 / 3.0;
+    let easting = if code < 31257 { 0 } else { 150_000 + 300_000 * strip };
+    format!(
+        "+proj=tmerc +lat_0=0 +lon_0={degrees:.13} +k=1 +x_0={easting} \
+         +y_0=-5000000 {MGI}"
+    )
 }
 
 #[cfg(test)]
@@ -194,10 +172,23 @@ mod tests {
 
     #[test]
     fn every_known_projection_can_be_used() {
-        for (code, ..) in KNOWN {
+        for code in KNOWN.map(|known| known.0).into_iter().chain(31254..=31259)
+        {
             let crs = Crs::parse(&format!("EPSG:{code}")).unwrap();
             assert!(crs.project((10.0, 47.0), 1000.0).is_some(), "{code}");
         }
+        // The strips' eastings, by the surveyor's office.
+        let east = [150_000.0, 450_000.0, 750_000.0];
+        for (code, east) in (31254..).zip(east) {
+            let of = |code: u32| Crs::parse(&code.to_string()).unwrap();
+            let at = |code| of(code).project((12.0, 47.0), 0.0).unwrap();
+            let (plain, told) = (at(code), at(code + 3));
+            near(Some(told), (plain.0 + east, plain.1), 1e-6);
+        }
+        // The middle strip's own meridian; MGI lies within 200 m of WGS 84.
+        let strip = Crs::parse("31255").unwrap();
+        let (x, _) = strip.project((13.0 + 1.0 / 3.0, 47.0), 0.0).unwrap();
+        assert!(x.abs() < 200.0, "{x}");
         let local = Crs::local(11.38, 47.31).unwrap();
         near(local.project((11.38, 47.31), 0.0), (0.0, 0.0), 1e-3);
         near(local.project((11.38, 47.32), 0.0), (0.0, 1111.86), 0.5);

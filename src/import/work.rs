@@ -261,11 +261,12 @@ fn given_path(
         let way = ends.map_or(0.0, |(a, b)| b.along - a.along);
         (beside, way)
     };
-    let ((beside, way), back) = (along(&line), line.reversed());
-    let (line, (beside, way), turned) = match way < 0.0 {
-        true => (back.clone(), along(&back), ", turned round"),
-        false => (line, (beside, way), ""),
-    };
+    let (mut line, mut turned) = (line, "");
+    let (mut beside, mut way) = along(&line);
+    if way < 0.0 {
+        (line, turned) = (line.reversed(), ", turned round");
+        (beside, way) = along(&line);
+    }
     let off: Vec<f64> = beside.iter().map(|b| b.off).collect();
     check_path(&file, median(&off), way, outline.count)?;
     let which = match outline.count {

@@ -7,10 +7,11 @@ use csv::StringRecord;
 
 use super::lines::Lines;
 use super::plausible::{Values, is_mark};
-use super::words::{admissible, either, nearest, place, quoted};
+use super::words::{admissible, either, place, quoted};
 use crate::error::{Error, Result};
 use crate::observe::{Quantity, Series};
 use crate::physics::{Depth, DepthRows, Track};
+use crate::spelling::nearest;
 
 /// The most rows that a data file may have.
 pub const MOST_ROWS: usize = 1_000_000;

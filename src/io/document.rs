@@ -6,8 +6,9 @@ use std::path::Path;
 use toml::de::{DeTable, DeValue};
 
 use super::source::line_of;
-use super::words::{admissible, breaks_line, either, nearest, place, quoted};
+use super::words::{admissible, breaks_line, either, place, quoted};
 use crate::error::{Error, Result};
+use crate::spelling::nearest;
 
 /// The longest text that a key may have, in characters.
 const LONGEST: usize = 200;

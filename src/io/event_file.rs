@@ -10,7 +10,7 @@ use super::csv_file::{depth_of, recording_of, track_of};
 use super::document::{Document, Section};
 use super::doubtful::{doubts, slope_in_radians, would_fit};
 use super::source;
-use super::words::{either, nearest, place, quoted};
+use super::words::{either, place, quoted};
 use crate::error::{Error, Result, Stop};
 use crate::noise::{self, Grid, NoiseEntry, NoiseFor, is_inferred, stand_in};
 use crate::observe::{Event, Quantity, Series};
@@ -18,6 +18,7 @@ use crate::physics::friction::{LawSum, Laws};
 use crate::physics::{Depth, Track};
 use crate::prior::AnyPrior;
 use crate::scalar::{Plain, Real};
+use crate::spelling::nearest;
 
 /// The most bytes that an event.toml may have.
 pub(super) const MOST_BYTES: u64 = 1 << 20;

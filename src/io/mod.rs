@@ -35,5 +35,5 @@ pub(crate) use inputs::inputs;
 pub(crate) use run_folder::{prepare_run, write_run};
 pub use template::new_event;
 #[cfg(feature = "import")]
-pub(crate) use words::{either, nearest, place, quoted};
+pub(crate) use words::{either, place, quoted};
 pub use write::write_all;

@@ -37,7 +37,7 @@ type Listed = BTreeMap<String, BTreeSet<String>>;
 pub(crate) fn prepare_run(
     folder: &Path,
     names: &[&str],
-    events: &[&Path],
+    events: &[PathBuf],
 ) -> Result<()> {
     try_folder(folder)?;
     let listed = read_list(folder)?;
@@ -297,7 +297,8 @@ mod tests {
         write_run(&folder, &files(&["corrected/event.toml"])).unwrap();
         prepare_run(&folder, &["a.json"], &[]).unwrap();
         let event = folder.join("corrected/event.toml");
-        let read = prepare_run(&folder, &["a.json"], &[&event]).unwrap_err();
+        let reads = [event.clone()];
+        let read = prepare_run(&folder, &["a.json"], &reads).unwrap_err();
         assert!(read.to_string().contains("give another --out"), "{read}");
         fs::write(&event, "edited").unwrap();
         assert!(prepare_run(&folder, &["a.json"], &[]).is_err());

@@ -1,5 +1,4 @@
-//! Words of messages: foreign text made safe to print, and names that a
-//! misspelt one may have meant.
+//! Words of messages: foreign text made safe to print.
 
 use std::path::Path;
 
@@ -42,36 +41,6 @@ pub(crate) fn either(names: &[&str]) -> String {
     }
 }
 
-/// The name that a misspelt one is closest to, if any is close.
-pub(crate) fn nearest<'n>(found: &str, known: &[&'n str]) -> Option<&'n str> {
-    if found.len() > LONGEST {
-        return None;
-    }
-    known
-        .iter()
-        .map(|name| (edits(&found.to_lowercase(), name), *name))
-        .min()
-        .filter(|(edits, name)| *edits <= 1 + name.len() / 3)
-        .map(|(_, name)| name)
-}
-
-/// How many letters to insert, delete or change between two words
-/// (Levenshtein's distance).
-fn edits(from: &str, to: &str) -> usize {
-    let to: Vec<char> = to.chars().collect();
-    let mut row: Vec<usize> = (0..=to.len()).collect();
-    for (i, a) in from.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, b) in to.iter().enumerate() {
-            let changed = diagonal + usize::from(a != *b);
-            diagonal = row[j + 1];
-            row[j + 1] = changed.min(1 + diagonal.min(row[j]));
-        }
-    }
-    row[to.len()]
-}
-
 /// A number, if it is one that couloir can take; otherwise what is wrong
 /// with it.
 pub(super) fn admissible(value: f64) -> Result<f64, String> {
@@ -98,11 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn a_misspelt_name_finds_the_one_meant() {
-        let known = ["depth", "file", "quantity"];
-        assert_eq!(nearest("depht", &known), Some("depth"));
-        assert_eq!(nearest("Quantity", &known), Some("quantity"));
-        assert_eq!(nearest("banana", &known), None);
+    fn names_are_listed_with_or_before_the_last() {
         assert_eq!(either(&["a", "b", "c"]), r#""a", "b" or "c""#);
     }
 }

@@ -11,6 +11,7 @@ use super::{
 use crate::block::{Block, Field};
 use crate::error::{Error, Stop};
 use crate::scalar::{Kind, Real};
+use crate::spelling::nearest;
 
 /// The longest list a noise may have: an order above says that the residuals
 /// are not noise, and costs in the order cubed where values are missing.
@@ -305,32 +306,16 @@ fn length(noise: &Listed, argument: Option<&str>) -> crate::Result<usize> {
 }
 
 fn unknown(found: &str) -> Error {
-    let nearest = NOISES
-        .iter()
-        .min_by_key(|n| edits(found, n.name))
-        .filter(|n| edits(found, n.name) <= 1 + n.name.len() / 3);
-    let mend = nearest.map_or(String::new(), |n| {
+    let known: Vec<_> = NOISES.iter().map(|n| n.name).collect();
+    let meant = nearest(found, &known)
+        .and_then(|name| NOISES.iter().find(|n| n.name == name));
+    let mend = meant.map_or(String::new(), |n| {
         format!("; did you mean \"{}\"?", n.pattern())
     });
     Error::input(format!(
         "there is no noise \"{found}\", there are {}{mend}",
         names().join(", ")
     ))
-}
-
-/// How many letters to insert, delete or change between two words
-/// (Levenshtein's distance).
-fn edits(from: &str, to: &str) -> usize {
-    let mut row: Vec<usize> = (0..=to.chars().count()).collect();
-    for (i, a) in from.chars().enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
-        for (j, b) in to.chars().enumerate() {
-            let changed = diagonal + usize::from(a != b);
-            diagonal = row[j + 1];
-            row[j + 1] = changed.min(diagonal + 1).min(row[j] + 1);
-        }
-    }
-    row.last().copied().unwrap_or(0)
 }
 
 #[cfg(test)]
@@ -406,12 +391,5 @@ mod tests {
             .unwrap();
         assert!((found - expected.value()).abs() < 1e-12);
         assert!(entry.with(&x[..2], &mut |_| panic!("called")).is_err());
-    }
-
-    #[test]
-    fn edits_are_counted() {
-        assert_eq!(edits("kitten", "sitting"), 3);
-        assert_eq!(edits("", "iid"), 3);
-        assert_eq!(edits("ar", "ar"), 0);
     }
 }

@@ -44,6 +44,9 @@ pub enum Axis {
 }
 
 impl Axis {
+    /// All of them.
+    pub(crate) const ALL: [Self; 3] = [Self::Place, Self::Time, Self::Speed];
+
     /// Its name in the labels of mechanisms.
     pub fn name(self) -> &'static str {
         match self {

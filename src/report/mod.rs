@@ -33,9 +33,9 @@ pub use svg::{Picture, pictures};
 pub use terminal::{picture, table};
 pub use words::in_words;
 
-/// The program and its version, as results name it.
-pub(crate) const PROGRAM: &str =
-    concat!("couloir ", env!("CARGO_PKG_VERSION"));
+/// The program, its version, and the commit that it was built from, as results
+/// name it.
+pub(crate) const PROGRAM: &str = concat!("couloir ", env!("COULOIR_VERSION"));
 
 /// All that is told about one calibration.
 #[derive(Debug, Clone, Default)]

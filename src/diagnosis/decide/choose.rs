@@ -30,6 +30,8 @@ pub(crate) struct Choice<'a, P> {
     pub(crate) beforehand: Beforehand<'a>,
     /// The model under the other noises that are kept.
     pub(crate) elsewhere: Vec<&'a Noisy<'a, P>>,
+    /// Whether one mechanism has to do.
+    pub(crate) singly: bool,
     pub(crate) seed: Seed,
 }
 
@@ -52,10 +54,14 @@ impl<P: Program> Choice<'_, P> {
         }
         let candidates = self.best_variants();
         let Some(first) = self.first(&candidates) else { return Ok(None) };
+        if self.singly {
+            let fit = self.found.candidates[first].clone();
+            return Ok(Some(Chosen::new(vec![first], fit)));
+        }
         let stepwise = Stepwise {
             program: self.noisy.program(),
             all: self.all,
-            open: self.noisy.own()[1],
+            open: &self.noisy.open.own,
             found: self.found,
             beforehand: &self.beforehand,
             candidates,

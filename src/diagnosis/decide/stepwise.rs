@@ -111,9 +111,7 @@ impl<'a, P: Program> Stepwise<'a, P> {
                 tried.insert(sorted(step.terms(&chosen.which)))
             });
             others.extend(self.fits(chosen, &steps)?);
-            let known: Vec<&Chosen> =
-                others.iter().map(|other| &other.chosen).collect();
-            let Some(next) = self.better(&known, chosen) else { break };
+            let Some(next) = self.better(&others, chosen) else { break };
             let next = others.swap_remove(next);
             others.push(std::mem::replace(&mut best, next));
         }
@@ -214,7 +212,7 @@ impl<'a, P: Program> Stepwise<'a, P> {
             mechanisms: &mechanisms,
             added: &parameters,
             own: chosen.fit.own(),
-            open: Some(self.open),
+            open: self.open,
         };
         let added = which[which.len() - 1];
         let added = (self.all[added].as_ref(), &self.found.candidates[added]);
@@ -242,8 +240,7 @@ impl<'a, P: Program> Stepwise<'a, P> {
             one.chosen.gain = self.gain(&one.chosen)?;
             Ok(())
         })?;
-        let chosen: Vec<&Chosen> = others.iter().map(|o| &o.chosen).collect();
-        if let Some(next) = self.better(&chosen, &best.chosen) {
+        if let Some(next) = self.better(others, &best.chosen) {
             std::mem::swap(best, &mut others[next]);
         }
         Ok(())
@@ -263,14 +260,12 @@ impl<'a, P: Program> Stepwise<'a, P> {
 
     /// Which of others is worth most, where that is more than what was chosen
     /// is worth by more than their errors.
-    fn better(&self, others: &[&Chosen], chosen: &Chosen) -> Option<usize> {
-        let worth = |c: &Chosen| self.worth_of(c);
-        let most = |a: &usize, b: &usize| {
-            worth(others[*a]).total_cmp(&worth(others[*b]))
-        };
+    fn better(&self, others: &[Tried<'_>], chosen: &Chosen) -> Option<usize> {
+        let worth = |i: usize| self.worth_of(&others[i].chosen);
+        let most = |a: &usize, b: &usize| worth(*a).total_cmp(&worth(*b));
         let best = (0..others.len()).max_by(most)?;
-        let error = others[best].fit.se.hypot(chosen.fit.se);
-        (worth(others[best]) > worth(chosen) + error).then_some(best)
+        let error = others[best].chosen.fit.se.hypot(chosen.fit.se);
+        (worth(best) > self.worth_of(chosen) + error).then_some(best)
     }
 
     /// Those of as many terms that are worth nearly as much, most first.

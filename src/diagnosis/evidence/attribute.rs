@@ -12,6 +12,7 @@ use crate::error::Result;
 use crate::infer::{LaplaceMixture, Precision, Progress, SearchSpace};
 use crate::mechanism::{Extent, Mechanism};
 use crate::model::{Posterior, Program, With};
+use crate::physics::forces::Axis;
 use crate::seed::Seed;
 
 /// What the evidence says of a model and of each mechanism added to it.
@@ -54,16 +55,32 @@ pub(crate) struct Care {
     relevant: f64,
     /// What is nearer is estimated sharply.
     decisive: f64,
+    /// Whether a quick look at each has to do.
+    is_quick: bool,
 }
 
 impl Care {
     /// Where evidences are asked for themselves: below, each has less than a
     /// hundred-thousandth of the probability.
-    const THOROUGH: Self = Self { relevant: 10.5, decisive: 10.5 };
+    const THOROUGH: Self =
+        Self { relevant: 10.5, decisive: 10.5, is_quick: false };
     /// Where a decision hangs on them: nothing below a thousandth of the
     /// probability is told, and what has less than a fiftieth neither leads
     /// nor joins the group, which ends at a tenth.
-    pub(crate) const DECIDING: Self = Self { relevant: 7.0, decisive: 4.0 };
+    pub(crate) const DECIDING: Self =
+        Self { relevant: 7.0, decisive: 4.0, is_quick: false };
+    /// Where an answer is wanted at once: nothing is estimated sharply, and
+    /// what is within a twentieth of the probability fairly.
+    pub(crate) const QUICK: Self =
+        Self { relevant: 3.0, decisive: f64::NEG_INFINITY, is_quick: true };
+
+    /// Over what a force of free form is sought.
+    fn axes(self) -> &'static [Axis] {
+        match self.is_quick {
+            true => &[Axis::Place],
+            false => &Axis::ALL,
+        }
+    }
 }
 
 /// Fits the model as it is, with a free-form force, and with each mechanism;
@@ -99,7 +116,9 @@ pub(crate) fn attribute_beside<P: Program>(
     progress.begin("locating the mismatch", None);
     let seed_of = seed.child(0).child(9);
     let forces = match extent {
-        Some(extent) => locate_all(program, extent, &none, seed_of)?,
+        Some(extent) => {
+            locate_all(program, extent, care.axes(), &none, seed_of)?
+        }
         None => Vec::new(),
     };
     let owns = Owns::of(program, &none, &forces)?;
@@ -107,7 +126,7 @@ pub(crate) fn attribute_beside<P: Program>(
     let weighing = Weighing { program, catalogue, care, seed };
     let candidates =
         weighing.weighed(none.log_evidence, progress, |mechanism, seed| {
-            single(program, mechanism, &owns, seed)
+            single(program, mechanism, &owns, care, seed)
         })?;
     Ok(Attribution { none, forces, candidates })
 }
@@ -134,7 +153,10 @@ impl<P: Program> Weighing<'_, P> {
         look: impl Fn(&dyn Mechanism, Seed) -> Result<Prospect> + Sync,
     ) -> Result<Vec<Fit>> {
         let looked = self.looked(progress, look)?;
-        let pursued = self.pursued(looked, known)?;
+        let pursued = match self.care.is_quick {
+            true => looked,
+            false => self.pursued(looked, known)?,
+        };
         self.fitted(pursued, known)
     }
 
@@ -261,6 +283,7 @@ fn single<P: Program>(
     program: &P,
     mechanism: &dyn Mechanism,
     owns: &Owns,
+    care: Care,
     seed: Seed,
 ) -> Result<Prospect> {
     let with = With::new(program, &[mechanism]);
@@ -271,11 +294,13 @@ fn single<P: Program>(
         let seed = seed.child(0).child(i as u64);
         space.extend(around(&posterior, mechanism, None, &[], own, seed)?);
     }
-    for own in &owns.tails {
+    let tails = if care.is_quick { &[][..] } else { &owns.tails };
+    for own in tails {
         let coarse = edge_grids(&posterior, mechanism, &[], own, COARSE)?;
         space.grids.extend(coarse);
     }
-    let backend = LaplaceMixture::within(space);
+    let thorough = LaplaceMixture::within(space);
+    let backend = if care.is_quick { thorough.quick() } else { thorough };
     prospect(program, &[mechanism], backend, seed.child(1))
 }
 

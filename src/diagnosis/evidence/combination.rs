@@ -16,7 +16,7 @@ pub(crate) struct Known<'k, 'a> {
     /// The model's own parameters.
     pub(crate) own: &'k [f64],
     /// The same beside a force of free form.
-    pub(crate) open: Option<&'k [f64]>,
+    pub(crate) open: &'k [f64],
 }
 
 /// Mechanisms together after a quick look at them.
@@ -97,8 +97,8 @@ impl<'a> Combination<'a> {
         let Known { added: before, own, open, .. } = *known;
         let seed_of = seed.child(0);
         let mut space = around(&posterior, added, best, before, own, seed_of)?;
-        let all = |own| [before, fit.mechanism(), own].concat();
-        space.starts.splice(1..1, open.map(all));
+        let all = [before, fit.mechanism(), open].concat();
+        space.starts.insert(1, all);
         Self::looked(program, mechanisms, space, seed.child(9))
     }
 

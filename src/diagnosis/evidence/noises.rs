@@ -177,6 +177,20 @@ pub(crate) fn noises<'a, P: Program>(
     kept(all, seed)
 }
 
+/// The named noise alone, as if nothing else could have made the errors.
+///
+/// # Errors
+/// A model that fails under it.
+pub(crate) fn named_alone<'a, P: Program>(
+    program: &'a P,
+    named: &str,
+    extent: &Extent,
+    seed: Seed,
+) -> Result<Noises<'a, P>> {
+    let survey = Survey { program, extent, own_priors: false, seed };
+    kept(vec![survey.named(named)?], seed)
+}
+
 /// Weighs a program under many noises.
 struct Survey<'a, 'e, P> {
     program: &'a P,

@@ -42,6 +42,7 @@ impl<'a, P: Program> Table<'a, P> {
         noises: Noises<'a, P>,
         extent: &Extent,
         catalogue: &[Box<dyn Mechanism>],
+        care: Care,
         seed: Seed,
         progress: &dyn Progress,
     ) -> Result<Self> {
@@ -49,7 +50,7 @@ impl<'a, P: Program> Table<'a, P> {
         let mut kept = kept.into_iter();
         let first = Row::bare(kept.next().ok_or_else(no_noise)?);
         let mut table = Self { rows: vec![first], dropped };
-        table.rows[0].fill(extent, catalogue, seed, progress)?;
+        table.rows[0].fill(extent, catalogue, care, seed, progress)?;
         progress.begin("weighing them under other noises", None);
         for (i, noisy) in kept.enumerate() {
             let seed = seed.child(100 + i as u64);
@@ -104,6 +105,7 @@ impl<'a, P: Program> Row<'a, P> {
         &mut self,
         extent: &Extent,
         catalogue: &[Box<dyn Mechanism>],
+        care: Care,
         seed: Seed,
         progress: &dyn Progress,
     ) -> Result<()> {
@@ -115,7 +117,7 @@ impl<'a, P: Program> Row<'a, P> {
             self.noisy.none.clone(),
             Some(extent),
             catalogue,
-            Care::DECIDING,
+            care,
             seed,
             progress,
         )?;

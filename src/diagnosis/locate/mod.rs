@@ -153,7 +153,8 @@ pub fn locate<P: Program>(
     none: &Fit,
     seed: Seed,
 ) -> Result<FreeForce> {
-    located(program, extent, &[axis], none, seed).map(|mut all| all.remove(0))
+    locate_all(program, extent, &[axis], none, seed)
+        .map(|mut all| all.remove(0))
 }
 
 /// About what a free-form force brings.
@@ -220,21 +221,11 @@ pub(crate) fn left<P: Program>(
     locate(&with, extent, Axis::Place, &whole, seed)
 }
 
-/// The same along every axis; most sharply where the force is likely.
+/// The same along several axes; most sharply where the force is likely.
 ///
 /// # Errors
 /// As [`locate`].
 pub(crate) fn locate_all<P: Program>(
-    program: &P,
-    extent: &Extent,
-    none: &Fit,
-    seed: Seed,
-) -> Result<Vec<FreeForce>> {
-    let axes = [Axis::Place, Axis::Time, Axis::Speed];
-    located(program, extent, &axes, none, seed)
-}
-
-fn located<P: Program>(
     program: &P,
     extent: &Extent,
     axes: &[Axis],

@@ -170,6 +170,7 @@ impl Diagnosis {
             "baseline": baseline_json(&self.baseline),
             "verdict": self.verdict.name(),
             "weak": self.weak,
+            "quick": self.quick,
             "mismatch": list(&self.mismatch, mismatch_json),
             "mechanisms": list(&self.mechanisms, judged_json),
             "noise": list(&self.noise, judged_noise_json),

@@ -38,6 +38,7 @@ const TOLD: usize = 2;
 /// ```
 pub fn in_words(d: &Diagnosis) -> Vec<String> {
     let mut said = vec![verdict(d)];
+    said.extend(d.quick.then(quick));
     if d.verdict == Verdict::Adequate {
         said.extend(fit_as_it_is(d));
         said.push(residuals(&d.baseline));
@@ -70,6 +71,12 @@ pub fn in_words(d: &Diagnosis) -> Vec<String> {
     said.extend(d.notes.iter().cloned());
     said.extend(warnings(d));
     said
+}
+
+fn quick() -> String {
+    "This is a quick look, to be made sure of without --quick: it had one \
+     noise, one mechanism at a time, and rough evidences."
+        .to_owned()
 }
 
 fn verdict(d: &Diagnosis) -> String {

@@ -10,6 +10,7 @@ use super::{Friction, Rate, Site, Varies};
 use crate::block::{Field, Named};
 use crate::error::{Error, Result};
 use crate::scalar::{Grad, Kind, Plain, Real, Reverse};
+use crate::spelling::nearest;
 
 /// A law whose parameters are given as a slice.
 pub trait RateOf<K: Kind> {
@@ -151,28 +152,6 @@ impl Laws {
             ))
         })
     }
-}
-
-/// The name that a misspelt one is closest to, if any is close.
-fn nearest<'n>(found: &str, known: &[&'n str]) -> Option<&'n str> {
-    let found = found.to_lowercase();
-    let near = known.iter().map(|name| (edits(&found, name), *name)).min();
-    near.filter(|(edits, name)| *edits <= 1 + name.len() / 4).map(|n| n.1)
-}
-
-/// How many letters to insert, delete or change between two words
-/// (Levenshtein's distance).
-fn edits(from: &str, to: &str) -> usize {
-    let mut row: Vec<usize> = (0..=to.chars().count()).collect();
-    for (i, a) in from.chars().enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
-        for (j, b) in to.chars().enumerate() {
-            let changed = diagonal + usize::from(a != b);
-            diagonal = row[j + 1];
-            row[j + 1] = changed.min(diagonal + 1).min(row[j] + 1);
-        }
-    }
-    row[to.chars().count()]
 }
 
 /// A sum of named laws.

@@ -1,0 +1,60 @@
+//! What stands at the end of every help: lines to copy.
+
+pub(super) const ALL: &str = "\
+Examples:
+  couloir new my-event            a commented event to start from
+  couloir calibrate my-event --out results
+  couloir diagnose my-event --out results";
+
+pub(super) const CALIBRATE: &str = "\
+Examples:
+  couloir calibrate my-event --out results
+  couloir calibrate my-event --friction coulomb --noise \"ar(1)\"
+  couloir calibrate my-event --noise infer --rest
+  couloir calibrate my-event --quick";
+
+pub(super) const COMPARE: &str = "\
+Examples:
+  couloir compare my-event --model \"coulomb, ar(1)\" --model \"voellmy, ar(1)\"";
+
+pub(super) const DIAGNOSE: &str = "\
+Examples:
+  couloir diagnose my-event --out results
+  couloir diagnose my-event --quick
+  couloir diagnose sensor-1 sensor-2 --one-law --out results";
+
+pub(super) const SIMULATE: &str = "\
+Examples:
+  couloir simulate my-event --set mu=0.3 --set xi=1200
+  couloir simulate my-event --out run";
+
+pub(super) const NEW: &str = "\
+Examples:
+  couloir new my-event";
+
+#[cfg(feature = "import")]
+pub(super) const IMPORT: &str = "\
+Examples:
+  couloir import log.gpx --out my-event
+  couloir import log.csv --columns \"time=UTC,speed=v_kmh:km/h,lon=x,lat=y\" \\
+    --terrain dem.asc --path path.shp --crs EPSG:31254 --out my-event";
+
+pub(super) const BENCH: &str = "\
+Examples:
+  couloir bench my-event --draws 2000";
+
+pub(super) const CHALLENGE: &str = "\
+Examples:
+  couloir challenge --cases 24 --out scores";
+
+pub(super) const REPRODUCE: &str = "\
+Examples:
+  couloir reproduce --samples 20 --out study";
+
+pub(super) const COMPLETIONS: &str = "\
+Examples:
+  couloir completions bash > ~/.local/share/bash-completion/completions/couloir";
+
+pub(super) const MAN: &str = "\
+Examples:
+  couloir man --out ~/.local/share/man/man1";

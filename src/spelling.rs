@@ -1,0 +1,55 @@
+//! Names that a misspelt one may have meant.
+
+/// The longest word, in bytes, that is taken for a misspelt name.
+const LONGEST: usize = 60;
+
+/// The name that a misspelt one is closest to, if any is close: the case
+/// aside, at most one letter in three is wrong, and one more.
+pub(crate) fn nearest<'n>(found: &str, known: &[&'n str]) -> Option<&'n str> {
+    if found.len() > LONGEST {
+        return None;
+    }
+    let found = found.to_lowercase();
+    let near = known
+        .iter()
+        .map(|name| (edits(&found, &name.to_lowercase()), *name))
+        .min();
+    near.filter(|(edits, name)| *edits <= 1 + name.len() / 3).map(|n| n.1)
+}
+
+/// How many letters to insert, delete or change between two words
+/// (Levenshtein's distance).
+fn edits(from: &str, to: &str) -> usize {
+    let mut row: Vec<usize> = (0..=to.chars().count()).collect();
+    for (i, a) in from.chars().enumerate() {
+        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
+        for (j, b) in to.chars().enumerate() {
+            let changed = diagonal + usize::from(a != b);
+            diagonal = row[j + 1];
+            row[j + 1] = changed.min(diagonal + 1).min(row[j] + 1);
+        }
+    }
+    row.last().copied().unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edits_are_counted() {
+        assert_eq!(edits("kitten", "sitting"), 3);
+        assert_eq!(edits("", "iid"), 3);
+        assert_eq!(edits("ar", "ar"), 0);
+    }
+
+    #[test]
+    fn only_a_close_name_is_meant() {
+        let known = ["coulomb", "voellmy", "depth", "Speed"];
+        assert_eq!(nearest("Voelmy", &known), Some("voellmy"));
+        assert_eq!(nearest("depht", &known), Some("depth"));
+        assert_eq!(nearest("sped", &known), Some("Speed"));
+        assert_eq!(nearest("banana", &known), None);
+        assert_eq!(nearest(&"coulomb".repeat(9), &known), None);
+    }
+}
