@@ -1,8 +1,11 @@
 //! What a command answers, and whether `--strict` lets it pass.
 
+use std::collections::BTreeMap;
+
 use clap::Args;
 
 use crate::error::{Error, Result};
+use crate::report::Origin;
 
 /// A refusal to take a result that should not be used for one.
 #[derive(Debug, Args)]
@@ -45,6 +48,24 @@ impl From<String> for Answer {
     }
 }
 
+/// Where a result comes from, of inputs with these checksums.
+pub(super) fn origin(inputs: BTreeMap<String, String>) -> Origin {
+    let words = std::env::args_os().skip(1);
+    let words = words.map(|word| quoted_word(&word.to_string_lossy()));
+    let typed: Vec<String> =
+        ["couloir".to_owned()].into_iter().chain(words).collect();
+    Origin { command: typed.join(" "), inputs }
+}
+
+/// A word of a command as a shell would take it.
+fn quoted_word(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_=./,:+@%".contains(c);
+    match !word.is_empty() && word.chars().all(is_plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', "'\\''")),
+    }
+}
+
 /// A JSON document as it is printed and written.
 pub(super) fn pretty(document: &serde_json::Value) -> String {
     format!("{document:#}\n")
@@ -68,4 +89,17 @@ pub(super) fn wrapped(sentence: &str, width: usize) -> String {
     }
     text.push('\n');
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_command_can_be_typed_again() {
+        assert_eq!(quoted_word("--rate=2"), "--rate=2");
+        assert_eq!(quoted_word("ar(1)"), "'ar(1)'");
+        assert_eq!(quoted_word("it's"), r"'it'\''s'");
+        assert_eq!(quoted_word(""), "''");
+    }
 }

@@ -1,9 +1,8 @@
 //! `couloir calibrate`: a friction law with its uncertainty.
 
 use clap::Args;
-use serde_json::json;
 
-use super::answer::{Answer, Strict, pretty, wrapped};
+use super::answer::{Answer, Strict, origin, pretty, wrapped};
 use super::progress::Told;
 use super::results::Output;
 use super::study::Read;
@@ -15,7 +14,7 @@ use crate::error::Result;
 use crate::infer::{Suited, suited};
 use crate::physics::friction::Laws;
 use crate::report::{
-    PROGRAM, calibration_json, in_words, noises, page, picture, table,
+    calibration_json, in_words, noises, page, picture, table,
 };
 
 #[derive(Debug, Args)]
@@ -68,12 +67,11 @@ impl Arguments {
             read.said.note([QUICK.to_owned()]);
         }
         // Summed before the work, as they were read.
-        let inputs = subject.inputs()?;
-        let found = self.found(read, told)?;
+        let origin = origin(subject.inputs()?);
+        let mut found = self.found(read, told)?;
+        found.report.origin = origin;
         told.finish();
         let mut json = calibration_json(&found.report);
-        json["inputs"] = json!(inputs);
-        json["program"] = PROGRAM.into();
         json["quick"] = self.quick.into();
         let json = pretty(&json);
         let wrote = results.write(|| {

@@ -47,6 +47,9 @@ pub(super) struct Arguments {
     /// Study instead what size of this mechanism is seen in what noise
     #[arg(long, value_name = "MECHANISM")]
     power: Option<String>,
+    /// Diagnose as --quick does, at the recordings' own rates
+    #[arg(long)]
+    quick: bool,
     /// Folder to write the page and challenge.json to
     #[arg(long, value_name = "DIR", value_parser = folder)]
     out: Option<PathBuf>,
@@ -63,6 +66,8 @@ const NOISES: [f64; 3] = [0.1, 0.3, 0.9];
 /// How long a case of one recording takes, and of two, on one processor of
 /// 2026 \[s\]; what it takes here is told once some are done.
 const SECONDS: [f64; 2] = [8.0, 20.0];
+/// The same of a quick look.
+const QUICK_SECONDS: [f64; 2] = [2.0, 5.0];
 
 impl Arguments {
     pub(super) fn run(&self, told: &Told) -> Result<answer::Answer> {
@@ -78,9 +83,11 @@ impl Arguments {
 
     /// The diagnoses of all cases.
     fn scored(&self, all: &[Case], told: &Told) -> Result<Scored> {
-        let each = SECONDS[usize::from(self.recordings == 2)];
+        let all_of = if self.quick { QUICK_SECONDS } else { SECONDS };
+        let each = all_of[usize::from(self.recordings == 2)];
         let pace = Pace::begun(all.len(), each, told);
-        let scored = run(all, &|case| answer(case, self.seed), true, &pace);
+        let scored =
+            run(all, &|case| answer(case, self.seed, self.quick), true, &pace);
         told.finish();
         scored
     }
@@ -133,7 +140,7 @@ fn errors(text: &str) -> Result<Errors, String> {
 }
 
 /// What the diagnosis says of a case, from its recordings alone.
-fn answer(case: &Case, seed: u64) -> Result<Answer> {
+fn answer(case: &Case, seed: u64, quick: bool) -> Result<Answer> {
     let mut models = case
         .recordings
         .iter()
@@ -141,13 +148,15 @@ fn answer(case: &Case, seed: u64) -> Result<Answer> {
         .collect::<Result<Vec<_>>>()?;
     let found = if models.len() > 1 {
         let together = Together::with_one_law(models)?;
-        let options = Options::of_all(&together, seed);
+        let mut options = Options::of_all(&together, seed);
+        options.quick = quick;
         diagnose_together(&together, Sharing::Shared, &options, &Quiet)?
     } else {
         let model = models
             .pop()
             .ok_or_else(|| Error::input("a case without a recording"))?;
-        let options = Options::of(&model, seed);
+        let mut options = Options::of(&model, seed);
+        options.quick = quick;
         diagnose(&model, model.event(), &options, &Quiet)?
     };
     Ok(answer_of(&found))

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde_json::{Map, Value};
+use serde_json::Value;
 
-use super::answer::{Answer, Strict, pretty};
+use super::answer::{Answer, Strict, origin, pretty};
 use super::progress::Told;
 use super::results::Output;
 use super::said::Said;
@@ -88,8 +88,6 @@ struct Found {
     found: Diagnosis,
     /// What each of several events is called by.
     labels: Vec<String>,
-    /// The checksums of what was read.
-    inputs: Map<String, Value>,
 }
 
 /// Files by their names in the folder of the results.
@@ -99,11 +97,9 @@ impl Arguments {
     pub(super) fn run(&self, laws: &Laws, told: &Told) -> Result<Answer> {
         let subjects = self.subjects(&self.thin.quickly(self.quick));
         let results = self.output.ready(&FILES, &self.events)?;
-        let Found { found, labels, inputs } =
-            self.found(&subjects, laws, told)?;
+        let Found { found, labels } = self.found(&subjects, laws, told)?;
         told.finish();
-        let mut json = found.json();
-        json["inputs"] = Value::Object(inputs);
+        let json = found.json();
         let mut names = FILES.to_vec();
         let wrote = results.write(|| {
             let again = corrected(&subjects, &labels, &found, laws)?;
@@ -148,8 +144,8 @@ impl Arguments {
             found.check_rate(&again);
         }
         found.warnings.splice(..0, said.warnings);
-        let inputs = inputs(sums, &labels);
-        Ok(Found { found, labels, inputs })
+        found.origin = origin(inputs(sums, &labels));
+        Ok(Found { found, labels })
     }
 
     /// Each event with what the command line changes of it.
@@ -211,14 +207,13 @@ fn read_all(subjects: &[Subject], laws: &Laws) -> Result<Vec<Read>> {
 fn inputs(
     sums: Vec<BTreeMap<String, String>>,
     labels: &[String],
-) -> Map<String, Value> {
+) -> BTreeMap<String, String> {
     let labelled = |(i, sums): (usize, BTreeMap<String, String>)| {
         let label = labels.get(i).map_or(String::new(), |l| format!("{l}/"));
         let named = move |(name, sum)| (format!("{label}{name}"), sum);
         sums.into_iter().map(named)
     };
-    let all = sums.into_iter().enumerate().flat_map(labelled);
-    all.map(|(name, sum)| (name, sum.into())).collect()
+    sums.into_iter().enumerate().flat_map(labelled).collect()
 }
 
 fn reports(found: &Diagnosis, json: &Value) -> Files {

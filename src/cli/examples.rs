@@ -2,7 +2,7 @@
 
 pub(super) const ALL: &str = "\
 Examples:
-  couloir new my-event            a commented event to start from
+  couloir new my-event
   couloir calibrate my-event --out results
   couloir diagnose my-event --out results";
 
@@ -36,7 +36,7 @@ Examples:
 pub(super) const IMPORT: &str = "\
 Examples:
   couloir import log.gpx --out my-event
-  couloir import log.csv --columns \"time=UTC,speed=v_kmh:km/h,lon=x,lat=y\" \\
+  couloir import log.csv --columns \"time=UTC,speed=v_kmh:km/h\" \\
     --terrain dem.asc --path path.shp --crs EPSG:31254 --out my-event";
 
 pub(super) const BENCH: &str = "\
@@ -58,3 +58,40 @@ Examples:
 pub(super) const MAN: &str = "\
 Examples:
   couloir man --out ~/.local/share/man/man1";
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::super::Cli;
+
+    /// The arguments of a line, those in quotes together, up to where the
+    /// shell would send the answer elsewhere.
+    fn arguments(line: &str) -> Vec<String> {
+        let line = line.split(" > ").next().unwrap();
+        let parts = line.split('"').enumerate();
+        parts
+            .flat_map(|(i, part)| match i % 2 {
+                0 => part.split_whitespace().map(str::to_owned).collect(),
+                _ => vec![part.to_owned()],
+            })
+            .collect()
+    }
+
+    #[test]
+    fn every_example_is_a_command() {
+        let all = Cli::command();
+        let helps = [&all].into_iter().chain(all.get_subcommands());
+        let mut tried = 0;
+        for help in helps {
+            let text = help.get_after_help().unwrap().to_string();
+            let text = text.replace("\\\n", " ");
+            for line in text.lines().skip(1) {
+                let found = all.clone().try_get_matches_from(arguments(line));
+                assert!(found.is_ok(), "{line}: {}", found.unwrap_err());
+                tried += 1;
+            }
+        }
+        assert!(tried > 12, "{tried}");
+    }
+}

@@ -21,11 +21,11 @@ mod progress;
 mod reproduce;
 mod results;
 mod said;
+mod screen;
 mod simulate;
 mod study;
 mod thin;
 
-use std::io::{ErrorKind, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -33,6 +33,7 @@ use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use self::answer::Answer;
 use self::progress::Told;
+use self::screen::{complain, print, width};
 use self::thin::Thin;
 use crate::error::{Error, Result};
 use crate::infer::{BACKENDS, Backend, Bridge, Effort, Gives, Smc, backend};
@@ -293,34 +294,4 @@ fn command_of(laws: &Laws) -> clap::Command {
         }
         subcommand.mut_arg("friction", |a| a.help(&help))
     })
-}
-
-/// Prints a result. A reader that has gone away (`| head`) is no error.
-fn print(text: &str) -> Result<()> {
-    let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Error::system(format!(
-                "the answer could not be printed ({error}); expected a \
-                 standard output that takes it: send it somewhere else"
-            )))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Says a line on the standard error stream.
-fn complain(message: &str) {
-    // Where that is closed or full, nobody is left to be told.
-    let _ = writeln!(std::io::stderr(), "couloir: {message}");
-}
-
-/// The width to print to: that of the terminal, 80 at the most.
-fn width() -> usize {
-    let columns = console_columns().unwrap_or(80);
-    columns.clamp(44, 80)
-}
-
-fn console_columns() -> Option<usize> {
-    std::env::var("COLUMNS").ok()?.parse().ok()
 }

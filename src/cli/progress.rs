@@ -6,7 +6,7 @@ use std::sync::Mutex;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::complain;
+use super::screen::complain;
 use crate::infer::Progress;
 
 /// Tells on the standard error stream how far an inference has come.

@@ -3,7 +3,7 @@
 use clap::Args;
 
 use crate::error::Result;
-use crate::observe::{Event, Thinning};
+use crate::observe::{Event, Thinned, Thinning};
 
 /// How many values, about, are few: a diagnosis of so many takes a second.
 const FEW: usize = 64;
@@ -67,7 +67,10 @@ impl Thin {
         let thinned = match (self.rate, few) {
             (Some(rate), _) => Some(event.thinned(rate, how)?),
             // With gaps all over there may be no means of so many.
-            (None, Some(few)) if self.quick => event.thinned(few, how).ok(),
+            (None, Some(few)) if self.quick => event
+                .thinned(few, how)
+                .ok()
+                .filter(|(_, done)| done.iter().any(Thinned::is_less)),
             _ => None,
         };
         if let Some((thin, done)) = thinned {

@@ -208,17 +208,13 @@ impl<P: Program> Subject<'_, P> {
         let mut diagnosis = Diagnosis {
             verdict: *verdict,
             quick: options.quick,
+            seed: options.seed,
             rivals,
             separating: separating(&group, judged),
             group,
             mechanisms: judged.clone(),
             noise: decision.noises.clone(),
-            selected_noise: match verdict {
-                Verdict::Adequate if !options.infers_noise => {
-                    options.noise.clone()
-                }
-                _ => row.noisy.name.clone(),
-            },
+            selected_noise: selected_noise(*verdict, row, options),
             law,
             ..compared
         };
@@ -436,6 +432,18 @@ fn corrected_model<'a, P>(
         (None, None) => return None,
     };
     Some(FittedModel { mechanisms, fit, first: seed.child(40), rough })
+}
+
+/// The noise of the corrected model: the named one where nothing is wrong.
+fn selected_noise<P: Program>(
+    verdict: Verdict,
+    row: &Row<'_, P>,
+    options: &Options,
+) -> String {
+    match verdict {
+        Verdict::Adequate if !options.infers_noise => options.noise.clone(),
+        _ => row.noisy.name.clone(),
+    }
 }
 
 /// The free-form force along the axis with the most evidence.

@@ -6,11 +6,16 @@ use crate::draws::{Draws, Summary};
 use crate::mechanism::Noun;
 use crate::physics::forces::Axis;
 use crate::predict::Bands;
+use crate::report::Origin;
 
 /// What a diagnosis says of a model and its recordings.
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct Diagnosis {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// The seed of every random draw.
+    pub seed: u64,
     /// The event's name; several, joined by " + ".
     pub event: String,
     /// The model as it was.

@@ -277,7 +277,10 @@ pub(super) fn diagnosis() -> Diagnosis {
             ..Baseline::default()
         },
         verdict: Verdict::MissingPhysics,
+        origin: crate::report::Origin::default(),
+        seed: 1,
         weak: false,
+        quick: false,
         mismatch: vec![mismatch()],
         mechanisms: mechanisms(),
         noise: noises(),

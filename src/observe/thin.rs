@@ -57,6 +57,13 @@ pub struct Thinned {
     window: f64,
 }
 
+impl Thinned {
+    /// Whether there are fewer values than there were.
+    pub(crate) fn is_less(&self) -> bool {
+        self.to < self.from
+    }
+}
+
 impl fmt::Display for Thinned {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { quantity, bin, fewest, from, to, window, .. } = self;

@@ -53,6 +53,7 @@ pub fn calibration_json(report: &CalibrationReport) -> Value {
     if let Some(found) = &report.law {
         document["law"] = law(found);
     }
+    report.origin.write_to(&mut document);
     document
 }
 
@@ -167,6 +168,7 @@ mod tests {
                 "model",
                 "notes",
                 "parameters",
+                "program",
                 "schema",
                 "seed",
                 "simulations",

@@ -12,6 +12,7 @@ pub(crate) mod fixture;
 mod json;
 mod law;
 mod noises;
+mod origin;
 #[cfg(feature = "pages")]
 mod page;
 pub mod svg;
@@ -25,10 +26,11 @@ pub(crate) use json::noise_json;
 pub use law::LawReport;
 pub use noises::{NoiseReport, noises};
 pub(crate) use noises::{NoiseRow, noise_lines};
+pub use origin::Origin;
 #[cfg(feature = "pages")]
 pub use page::page;
 #[cfg(feature = "pages")]
-pub(crate) use page::{figure, noise_table, standalone};
+pub(crate) use page::{figure, how_computed, noise_table, standalone};
 pub use svg::{Picture, pictures};
 pub use terminal::{picture, table};
 pub use words::in_words;
@@ -41,6 +43,8 @@ pub(crate) const PROGRAM: &str = concat!("couloir ", env!("COULOIR_VERSION"));
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct CalibrationReport {
+    /// Where it comes from.
+    pub origin: Origin,
     /// The event's name, as its file gives it.
     pub event: String,
     /// The friction law, as in `event.toml`: `voellmy`.

@@ -8,9 +8,7 @@ use super::digits::{
 use super::svg::{Picture, pictures};
 use super::text::{plain, unit};
 use super::words::sentences;
-use super::{
-    CalibrationReport, NoiseReport, NoiseRow, PROGRAM, ParameterReport,
-};
+use super::{CalibrationReport, NoiseReport, NoiseRow, ParameterReport};
 
 const STYLE: &str = include_str!("page.css");
 
@@ -227,32 +225,41 @@ pub(crate) fn figure(picture: &Picture) -> Markup {
 }
 
 fn computed(report: &CalibrationReport) -> Markup {
-    html! {
-        h2 { "How it was computed" }
-        dl {
-            @for (term, text) in facts(report) {
-                dt { (term) }
-                dd { (plain(&text)) }
-            }
-        }
-        @if !report.parameters.is_empty() {
-            h3 { "Priors" }
+    let priors = report.parameters.iter();
+    let priors = priors.map(|p| (p.name.clone(), p.prior_text.clone()));
+    how_computed(&facts(report), &priors.collect::<Vec<_>>())
+}
+
+/// What a result comes from, and the priors, each by what it is called.
+pub(crate) fn how_computed(
+    facts: &[(String, String)],
+    priors: &[(String, String)],
+) -> Markup {
+    let list = |all: &[(String, String)]| {
+        html! {
             dl {
-                @for p in &report.parameters {
-                    dt { (plain(&p.name)) }
-                    dd { (plain(&p.prior_text)) }
+                @for (term, text) in all {
+                    dt { (plain(term)) }
+                    dd { (plain(text)) }
                 }
             }
+        }
+    };
+    html! {
+        h2 { "How it was computed" }
+        (list(facts))
+        @if !priors.is_empty() {
+            h3 { "Priors" }
+            (list(priors))
         }
     }
 }
 
 /// What a reader needs to repeat the run and to judge it.
-fn facts(report: &CalibrationReport) -> Vec<(&'static str, String)> {
+fn facts(report: &CalibrationReport) -> Vec<(String, String)> {
     let c = &report.checks;
     let seconds = significant(report.seconds, 3);
     let mut out = vec![
-        ("program", PROGRAM.to_owned()),
         ("friction", report.friction.clone()),
         ("errors", report.noise.clone()),
         ("recording", recording(report)),
@@ -279,7 +286,8 @@ fn facts(report: &CalibrationReport) -> Vec<(&'static str, String)> {
         let text = format!("{value}, standard error {se} ({})", e.method);
         out.push(("log evidence", text));
     }
-    out
+    let out = out.into_iter().map(|(term, text)| (term.to_owned(), text));
+    report.origin.facts().into_iter().chain(out).collect()
 }
 
 fn recording(report: &CalibrationReport) -> String {

@@ -5,12 +5,13 @@ use std::f64::consts::LN_10;
 use serde_json::{Map, Value, json};
 
 use crate::diagnosis::locate::FreeForce;
+use crate::diagnosis::tell::words::in_words;
 use crate::diagnosis::{
     Baseline, Corrected, Diagnosis, Improvement, Judged, JudgedNoise,
     LawParameters, Mismatch, ParameterSummary, Rest, Rival,
 };
 use crate::physics::forces::Axis;
-use crate::report::{PROGRAM, noise_json};
+use crate::report::noise_json;
 
 fn axis_name(axis: Axis) -> &'static str {
     match axis {
@@ -163,9 +164,9 @@ fn list<T>(all: &[T], one: impl Fn(&T) -> Value) -> Value {
 impl Diagnosis {
     /// `diagnosis.json`.
     pub fn json(&self) -> Value {
-        json!({
+        let mut document = json!({
             "schema": 2,
-            "program": PROGRAM,
+            "seed": self.seed,
             "event": self.event,
             "baseline": baseline_json(&self.baseline),
             "verdict": self.verdict.name(),
@@ -189,6 +190,9 @@ impl Diagnosis {
             "warnings": self.warnings,
             "notes": self.notes,
             "doubts": self.doubts,
-        })
+            "words": in_words(self),
+        });
+        self.origin.write_to(&mut document);
+        document
     }
 }

@@ -11,10 +11,9 @@ use crate::diagnosis::{
     Diagnosis, Hypothesis, JudgedNoise, LawParameters, ParameterSummary,
     Pictured, Verdict,
 };
-use crate::report::PROGRAM;
 use crate::report::digits::{beside, significant};
 use crate::report::text::{is_synthetic, plain, unit};
-use crate::report::{noise_table, standalone};
+use crate::report::{how_computed, noise_table, standalone};
 
 /// `report.html` of a diagnosis: in words first, then what was located, both
 /// models on the recordings, the evidence, and the corrected model.
@@ -340,21 +339,20 @@ fn row(p: &ParameterSummary) -> Markup {
 
 fn computed(d: &Diagnosis) -> Markup {
     let values: usize = d.pictured.iter().map(|p| p.values.len()).sum();
+    let log = significant(d.baseline.log_evidence, 5).replace('-', "−");
     let seconds = significant(d.seconds, 3);
-    html! {
-        h2 { "How it was computed" }
-        dl {
-            dt { "program" }
-            dd { (PROGRAM) }
-            dt { "log evidence before" }
-            dd { (significant(d.baseline.log_evidence, 5).replace('-', "−")) }
-            @if values > 0 {
-                dt { "recorded values" }
-                dd { (values) " in " (d.pictured.len()) " recording"
-                    @if d.pictured.len() > 1 { "s" } }
-            }
-            dt { "duration" }
-            dd { (seconds) " s" }
-        }
+    let mut own = vec![
+        ("seed", d.seed.to_string()),
+        ("log evidence before", log),
+        ("duration", format!("{seconds} s")),
+    ];
+    if values > 0 {
+        let recordings = d.pictured.len();
+        let many = if recordings > 1 { "s" } else { "" };
+        let told = format!("{values} in {recordings} recording{many}");
+        own.insert(1, ("recorded values", told));
     }
+    let own = own.into_iter().map(|(term, text)| (term.to_owned(), text));
+    let facts: Vec<_> = d.origin.facts().into_iter().chain(own).collect();
+    how_computed(&facts, &d.baseline.priors)
 }
