@@ -1,4 +1,5 @@
-//! The whole report as one HTML page that needs no network and no script.
+//! The whole report as one HTML page that needs no network; without its script
+//! it says the same.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -11,6 +12,7 @@ use super::words::sentences;
 use super::{CalibrationReport, NoiseReport, NoiseRow, ParameterReport};
 
 const STYLE: &str = include_str!("page.css");
+const SCRIPT: &str = include_str!("page.js");
 
 /// `report.html`: the result in words, the table, the pictures, and how all
 /// of it was computed.
@@ -48,7 +50,10 @@ pub(crate) fn standalone(title: &str, body: &Markup) -> String {
                 title { (title) }
                 style { (PreEscaped(STYLE)) }
             }
-            body { (body) }
+            body {
+                (body)
+                script { (PreEscaped(SCRIPT)) }
+            }
         }
     };
     whole.into_string()

@@ -1,15 +1,17 @@
-//! The diagnosis as one HTML page that needs no network and no script.
+//! The diagnosis as one HTML page that needs no network; without its script it
+//! says the same.
 
 use maud::{Markup, PreEscaped, html};
 
 use crate::diagnosis::tell::phrases::{
-    friction, interval, is_corrected, noise_row, with_unit,
+    called, capital, friction, interval, is_corrected, noise_row, probability,
+    with_unit,
 };
 use crate::diagnosis::tell::pictures::{Figure, bars, forces, of_event};
 use crate::diagnosis::tell::words::{before_and_after, in_words};
 use crate::diagnosis::{
-    Diagnosis, Hypothesis, JudgedNoise, LawParameters, ParameterSummary,
-    Pictured, Verdict,
+    Diagnosis, Hypothesis, Judged, LawParameters, ParameterSummary, Pictured,
+    Verdict,
 };
 use crate::report::digits::{beside, significant};
 use crate::report::text::{is_synthetic, plain, unit};
@@ -29,13 +31,17 @@ pub fn page(d: &Diagnosis) -> String {
         &title,
         &html! {
             (heading(d))
-            (words(d))
+            (answer(d))
             @for (i, p) in d.pictured.iter().enumerate() {
-                (pictured(d, p, i))
+                (recorded(d, p, i))
+            }
+            (details(d))
+            @for (i, p) in d.pictured.iter().enumerate() {
+                (on_track(d, p, i))
             }
             (section(force_title(d.verdict), forces(d)))
             (section("What may be missing", bars(d)))
-            (sentences(d))
+            (mechanisms(d))
             (noises(d))
             (corrected(d))
             (compared(d))
@@ -57,11 +63,36 @@ fn heading(d: &Diagnosis) -> Markup {
     }
 }
 
-fn words(d: &Diagnosis) -> Markup {
+/// How many sentences the first screen has: the verdict, where, and what
+/// explains it; and that it is a quick look, where it is.
+fn first_sentences(d: &Diagnosis) -> usize {
+    3 + usize::from(d.quick)
+}
+
+/// The verdict and the sentences that everybody reads.
+fn answer(d: &Diagnosis) -> Markup {
+    let words = in_words(d);
+    let first = &words[..words.len().min(first_sentences(d))];
     html! {
-        p { strong { (headline(d.verdict)) } }
-        ul.words {
-            @for sentence in in_words(d) { li { (unbroken(&sentence)) } }
+        p class={ "verdict " (d.verdict.name()) } {
+            strong { (headline(d.verdict)) }
+            @if d.quick { " " span.mark { "quick look" } }
+            @if d.weak { " " span.mark { "weak" } }
+        }
+        @for sentence in first { p.lead { (unbroken(sentence)) } }
+    }
+}
+
+/// All other sentences.
+fn details(d: &Diagnosis) -> Markup {
+    let words = in_words(d);
+    let further = words.get(first_sentences(d)..).unwrap_or_default();
+    html! {
+        @if !further.is_empty() {
+            h2 { "In detail" }
+            ul.words {
+                @for sentence in further { li { (unbroken(sentence)) } }
+            }
         }
         @if !d.warnings.is_empty() {
             div.warning role="note" {
@@ -85,11 +116,11 @@ fn force_title(verdict: Verdict) -> &'static str {
 
 fn headline(verdict: Verdict) -> &'static str {
     match verdict {
-        Verdict::Adequate => "Verdict: adequate, nothing is missing",
-        Verdict::MissingPhysics => "Verdict: missing physics",
-        Verdict::Measurement => "Verdict: the start or the measurement is off",
-        Verdict::Errors => "Verdict: errors of another kind",
-        Verdict::Unexplained => "Verdict: unexplained",
+        Verdict::Adequate => "Nothing is missing",
+        Verdict::MissingPhysics => "Physics is missing",
+        Verdict::Measurement => "The start or the measurement is off",
+        Verdict::Errors => "The errors are of another kind",
+        Verdict::Unexplained => "Something is missing that has no name",
     }
 }
 
@@ -106,23 +137,29 @@ fn unbroken(sentence: &str) -> String {
     out
 }
 
-/// The pictures of one recording.
-fn pictured(d: &Diagnosis, p: &Pictured, i: usize) -> Markup {
-    let several = d.pictured.len() > 1;
-    let title = |what: &str| match several {
+/// What a picture of one recording is called.
+fn title(d: &Diagnosis, p: &Pictured, what: &str) -> String {
+    match d.pictured.len() > 1 {
         true => format!("{what}: {}", plain(&p.event)),
         false => what.to_owned(),
-    };
-    let place = if p.marked.is_empty() { "The track" } else { "Where" };
-    let prediction = match p.after.times.is_empty() {
+    }
+}
+
+/// A recording with what the models predict of it.
+fn recorded(d: &Diagnosis, p: &Pictured, i: usize) -> Markup {
+    let what = match p.after.times.is_empty() {
         true => "Recording and prediction",
         false => "Recording and prediction, before and after",
     };
-    let [track, recording] = of_event(d, p, i);
-    html! {
-        (section(&title(place), track))
-        (section(&title(prediction), recording))
-    }
+    let [_, recording] = of_event(d, p, i);
+    section(&title(d, p, what), recording)
+}
+
+/// A track with what was located on it.
+fn on_track(d: &Diagnosis, p: &Pictured, i: usize) -> Markup {
+    let what = if p.marked.is_empty() { "The track" } else { "Where" };
+    let [track, _] = of_event(d, p, i);
+    section(&title(d, p, what), track)
 }
 
 /// A picture under its heading, with its caption.
@@ -137,30 +174,41 @@ fn section(title: &str, figure: Option<Figure>) -> Markup {
     }
 }
 
-/// What the likeliest mechanisms say.
-fn sentences(d: &Diagnosis) -> Markup {
-    let told: Vec<_> = d
-        .mechanisms
-        .iter()
-        .filter(|m| !m.says.is_empty() && m.kind != Hypothesis::Baseline)
-        .filter(|m| m.probability >= 0.01 || d.selected.contains(&m.name))
-        .take(5)
-        .collect();
+/// The likeliest mechanisms: what they are called, how large they are, and
+/// the names that programs use.
+fn mechanisms(d: &Diagnosis) -> Markup {
+    let told = |m: &&Judged| {
+        m.kind != Hypothesis::Baseline
+            && (m.probability >= 0.01 || d.selected.contains(&m.name))
+    };
+    let told: Vec<&Judged> = d.mechanisms.iter().filter(told).collect();
+    if told.is_empty() {
+        return html! {};
+    }
     html! {
-        @if !told.is_empty() {
-            h3 { "What they say" }
-            dl { @for m in told {
-                dt { (plain(&m.name)) }
-                dd { (plain(&m.says)) }
+        div.wide { table {
+            thead { tr {
+                th scope="col" { "what" }
+                th scope="col" { "probability" }
+                th.left scope="col" { "how much (90 % interval)" }
+                th.left scope="col" { "name for programs" }
             } }
-        }
+            tbody { @for m in told {
+                tr {
+                    td.name { (capital(&called(m))) }
+                    td { (probability(m.probability)) }
+                    td.said { (sizes(&m.parameters)) }
+                    td.left { code { (plain(&m.name)) } }
+                }
+            } }
+        } }
     }
 }
 
 /// The noises that may have made the errors.
 fn noises(d: &Diagnosis) -> Markup {
     let rows: Vec<_> =
-        d.noise.iter().map(|n| (noise_row(n), sizes(n))).collect();
+        d.noise.iter().map(|n| (noise_row(n), sizes(&n.parameters))).collect();
     noise_table(
         &rows,
         "Each averaged over what may be missing; the Bayes factor is against \
@@ -168,13 +216,14 @@ fn noises(d: &Diagnosis) -> Markup {
     )
 }
 
-/// A noise's parameters with their 90 % intervals.
-fn sizes(noise: &JudgedNoise) -> String {
+/// Parameters with their 90 % intervals.
+fn sizes(parameters: &[ParameterSummary]) -> String {
     let one = |p: &ParameterSummary| {
         let middle = with_unit(&beside(p.q50, p.sd), &p.unit);
         format!("{} {middle} ({})", plain(&p.name), interval(p))
     };
-    noise.parameters.iter().map(one).collect::<Vec<_>>().join(", ")
+    let all: Vec<_> = parameters.iter().map(one).collect();
+    all.join(", ").replace('-', "−")
 }
 
 fn corrected(d: &Diagnosis) -> Markup {

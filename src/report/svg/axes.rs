@@ -1,6 +1,8 @@
 //! Scales, axes with round ticks, and legends.
 
-use super::canvas::{Anchor, Canvas, FONT, Frame, Point, WIDTH, text_width};
+use super::canvas::{
+    Anchor, Canvas, Ends, FONT, Frame, Point, WIDTH, text_width,
+};
 use super::palette::{FAINT, GREY, INK, Pen};
 use crate::report::digits::ticks;
 
@@ -92,6 +94,9 @@ impl Axes {
 
     /// Draws grid, ticks, axes and names.
     pub(crate) fn draw(&self, canvas: &mut Canvas, labels: Labels<'_>) {
+        if let (Some(x), Some(y)) = (labels.x, labels.y) {
+            self.describe(canvas, [x, y]);
+        }
         if let Some(name) = labels.y {
             self.draw_y(canvas, name);
         }
@@ -104,6 +109,13 @@ impl Axes {
         if labels.y.is_some() {
             canvas.line((left, top), (left, bottom), pen);
         }
+    }
+
+    /// Says what the numbers are, for a page that reads them out.
+    pub(crate) fn describe(&self, canvas: &mut Canvas, names: [&str; 2]) {
+        let [x, y] = [(self.x, names[0]), (self.y, names[1])]
+            .map(|(Scale { low, high }, name)| Ends { low, high, name });
+        canvas.panel(self.frame, &x, &y);
     }
 
     fn draw_y(&self, canvas: &mut Canvas, name: &str) {
@@ -160,6 +172,24 @@ pub(crate) enum Key {
     Fill(&'static str),
 }
 
+impl Key {
+    /// Draws the sign from x on, about a height.
+    fn draw(self, canvas: &mut Canvas, x: f64, middle: f64) {
+        match self {
+            Self::Line(pen) => {
+                canvas.line((x, middle), (x + 24.0, middle), pen);
+            }
+            Self::Dot(pen) => canvas.dots(&[(x + 12.0, middle)], pen),
+            Self::Fill(fill) => {
+                let (left, right) = (x, x + 24.0);
+                let (top, bottom) = (middle - 5.5, middle + 5.5);
+                let at = Frame { left, top, right, bottom };
+                canvas.rectangle(at, fill, 1.0);
+            }
+        }
+    }
+}
+
 /// Draws a legend from the left, in as many lines as it takes, its first at
 /// `top`; returns where it ends.
 pub(crate) fn legend(
@@ -174,20 +204,10 @@ pub(crate) fn legend(
         if x > left && x + width > WIDTH {
             (x, y) = (left, y + FONT + 6.0);
         }
-        let middle = y - 4.5;
-        match *key {
-            Key::Line(pen) => {
-                canvas.line((x, middle), (x + 24.0, middle), pen);
-            }
-            Key::Dot(pen) => canvas.dots(&[(x + 12.0, middle)], pen),
-            Key::Fill(fill) => {
-                let (left, right) = (x, x + 24.0);
-                let (top, bottom) = (middle - 5.5, middle + 5.5);
-                let at = Frame { left, right, top, bottom };
-                canvas.rectangle(at, fill, 1.0);
-            }
-        }
-        canvas.text((x + 30.0, y), Anchor::Start, INK, text);
+        canvas.key(text, |canvas| {
+            key.draw(canvas, x, y - 4.5);
+            canvas.text((x + 30.0, y), Anchor::Start, INK, text);
+        });
         x += width;
     }
     y + 12.0

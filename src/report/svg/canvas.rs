@@ -43,12 +43,22 @@ impl Frame {
     }
 }
 
+/// The numbers at the ends of an axis, and what they are of.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ends<'a> {
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+    pub(crate) name: &'a str,
+}
+
 /// A picture being drawn.
 #[derive(Debug)]
 pub(crate) struct Canvas {
     name: String,
     height: f64,
     clips: usize,
+    /// What is being drawn, as the legend names it; empty for the rest.
+    series: &'static str,
     body: String,
 }
 
@@ -67,7 +77,28 @@ pub(crate) fn text_width(text: &str) -> f64 {
 impl Canvas {
     /// An empty canvas; the name makes its identifiers unique on a page.
     pub(crate) fn new(name: impl Into<String>, height: f64) -> Self {
-        Self { name: name.into(), height, clips: 0, body: String::new() }
+        Self {
+            name: name.into(),
+            height,
+            clips: 0,
+            series: "",
+            body: String::new(),
+        }
+    }
+
+    /// From here on what is drawn is of a series, by its name in the legend,
+    /// until another is named or a clip ends; a page lets the reader hide it
+    /// and reads its values out.
+    pub(crate) fn of(&mut self, series: &'static str) {
+        self.series = series;
+    }
+
+    /// The attribute that says of which series an element is.
+    fn series(&self) -> String {
+        match self.series {
+            "" => String::new(),
+            name => format!(" data-series=\"{}\"", escape(name)),
+        }
     }
 
     // Writing into a String cannot fail.
@@ -86,8 +117,9 @@ impl Canvas {
         let path = path(points);
         if !path.is_empty() {
             self.push(format_args!(
-                "<path d=\"{path}\" fill=\"none\"{}/>",
-                stroke(pen)
+                "<path d=\"{path}\" fill=\"none\"{}{}/>",
+                stroke(pen),
+                self.series()
             ));
         }
     }
@@ -109,9 +141,10 @@ impl Canvas {
             let outline: Vec<Point> = there.chain(back).collect();
             if run.len() > 1 {
                 self.push(format_args!(
-                    "<path d=\"{}z\" fill=\"{fill}\" fill-opacity=\"{}\"/>",
+                    "<path d=\"{}z\" fill=\"{fill}\" \
+                     fill-opacity=\"{opacity}\"{}/>",
                     path(&outline),
-                    opacity
+                    self.series()
                 ));
             }
         }
@@ -125,8 +158,10 @@ impl Canvas {
         }
         if !path.is_empty() {
             self.push(format_args!(
-                "<path d=\"{path}\" fill=\"none\" stroke-linecap=\"round\"{}/>",
-                stroke(pen)
+                "<path d=\"{path}\" fill=\"none\" \
+                 stroke-linecap=\"round\"{}{}/>",
+                stroke(pen),
+                self.series()
             ));
         }
     }
@@ -135,12 +170,43 @@ impl Canvas {
     pub(crate) fn rectangle(&mut self, at: Frame, fill: &str, opacity: f64) {
         self.push(format_args!(
             "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" \
-             fill=\"{fill}\" fill-opacity=\"{opacity}\"/>",
+             fill=\"{fill}\" fill-opacity=\"{opacity}\"{}/>",
             number(at.left),
             number(at.top),
             number(at.width().max(0.0)),
             number(at.height().max(0.0)),
+            self.series()
         ));
+    }
+
+    /// What a page needs to read values out of a panel: its frame, and at
+    /// whose ends which numbers lie.
+    pub(crate) fn panel(&mut self, at: Frame, x: &Ends<'_>, y: &Ends<'_>) {
+        self.push(format_args!(
+            "<rect class=\"panel\" x=\"{}\" y=\"{}\" width=\"{}\" \
+             height=\"{}\" fill=\"none\" data-x=\"{} {}\" data-y=\"{} {}\" \
+             data-across=\"{}\" data-up=\"{}\"/>",
+            number(at.left),
+            number(at.top),
+            number(at.width().max(0.0)),
+            number(at.height().max(0.0)),
+            x.low,
+            x.high,
+            y.low,
+            y.high,
+            escape(x.name),
+            escape(y.name),
+        ));
+    }
+
+    /// The sign and the words of a legend entry, drawn together.
+    pub(crate) fn key(&mut self, name: &str, draw: impl FnOnce(&mut Self)) {
+        self.push(format_args!(
+            "<g class=\"key\" data-key=\"{}\">",
+            escape(name)
+        ));
+        draw(self);
+        self.push(format_args!("</g>"));
     }
 
     /// A text on one line.
@@ -210,8 +276,9 @@ impl Canvas {
         ));
     }
 
-    /// Ends what `clip` began.
+    /// Ends what `clip` began, and the series.
     pub(crate) fn unclip(&mut self) {
+        self.of("");
         self.push(format_args!("</g>"));
     }
 

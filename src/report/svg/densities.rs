@@ -70,13 +70,17 @@ fn panel(canvas: &mut Canvas, frame: Frame, p: &ParameterReport) {
     let high = Scale::of(heights).high.max(1e-150) * 1.06;
     let axes = Axes { frame, x, y: Scale { low: 0.0, high } };
     canvas.clip(frame);
+    canvas.of("90 % interval");
     draw_interval(canvas, &axes, p);
+    canvas.of("prior");
     canvas.curve(&curve(&axes, &p.prior_density), PRIOR_LINE);
+    canvas.of("posterior");
     canvas.curve(&curve(&axes, &p.posterior_density), POSTERIOR_LINE);
     canvas.unclip();
     let most = (frame.width() / 8.0) as usize;
     let name = shorten(&with_unit(&p.name, &p.unit), most);
     axes.draw(canvas, Labels { x: Some(&name), y: None });
+    axes.describe(canvas, [&with_unit(&p.name, &p.unit), "density"]);
 }
 
 /// The posterior with as much again at both sides, where the prior reaches

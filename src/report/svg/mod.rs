@@ -17,6 +17,7 @@ pub(crate) mod palette;
 mod recording;
 mod reliability;
 mod residuals;
+pub(crate) mod series;
 mod traces;
 mod track;
 

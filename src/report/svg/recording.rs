@@ -3,6 +3,7 @@
 use super::axes::{Axes, Key, Labels, Scale, legend};
 use super::canvas::{Canvas, Frame, WIDTH};
 use super::palette::{FLOW, FULL, INK, POSTERIOR, PRIOR, Pen};
+use super::series::{FLOWS, MEDIAN_FLOW, RECORDED, WITH_ERRORS};
 use super::{Picture, with_unit};
 use crate::report::text::{shorten, thinned};
 use crate::report::{Bands, CalibrationReport};
@@ -14,6 +15,9 @@ const VALUES: usize = 2000;
 const BARRED: usize = 200;
 /// At how many times the bands are drawn.
 const TIMES: usize = 500;
+
+/// What the prior's edges are called.
+const BEFORE_DATA: &str = "90 % of flows before the data";
 
 const MEDIAN: Pen = Pen::new(POSTERIOR, 2.0);
 const PRIOR_EDGE: Pen = Pen::new(PRIOR, 1.5).dashed();
@@ -51,14 +55,14 @@ pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
 }
 
 fn entries(report: &CalibrationReport) -> Vec<(Key, &'static str)> {
-    let mut out = vec![(Key::Dot(Pen::new(INK, 5.0)), "recording")];
+    let mut out = vec![(Key::Dot(Pen::new(INK, 5.0)), RECORDED)];
     if !report.bands.times.is_empty() {
-        out.push((Key::Line(MEDIAN), "median flow"));
-        out.push((Key::Fill(FLOW), "90 % of flows"));
-        out.push((Key::Fill(FULL), "90 % with errors"));
+        out.push((Key::Line(MEDIAN), MEDIAN_FLOW));
+        out.push((Key::Fill(FLOW), FLOWS));
+        out.push((Key::Fill(FULL), WITH_ERRORS));
     }
     if report.prior_bands.is_some() {
-        out.push((Key::Line(PRIOR_EDGE), "90 % of flows before the data"));
+        out.push((Key::Line(PRIOR_EDGE), BEFORE_DATA));
     }
     out
 }
@@ -78,15 +82,19 @@ fn value_scale(report: &CalibrationReport) -> Scale {
 
 fn draw_fills(canvas: &mut Canvas, axes: &Axes, b: &Bands) {
     let edge = |v: &[f64]| edge(axes, &b.times, v);
+    canvas.of(WITH_ERRORS);
     canvas.area(&edge(&b.full_low), &edge(&b.full_high), FULL, 1.0);
+    canvas.of(FLOWS);
     canvas.area(&edge(&b.flow_low), &edge(&b.flow_high), FLOW, 1.0);
 }
 
 fn draw_median(canvas: &mut Canvas, axes: &Axes, b: &Bands) {
+    canvas.of(MEDIAN_FLOW);
     canvas.curve(&edge(axes, &b.times, &b.median), MEDIAN);
 }
 
 fn draw_edges(canvas: &mut Canvas, axes: &Axes, prior: &Bands) {
+    canvas.of(BEFORE_DATA);
     for side in [&prior.flow_low, &prior.flow_high] {
         canvas.curve(&edge(axes, &prior.times, side), PRIOR_EDGE);
     }
@@ -118,6 +126,7 @@ fn draw_values(
     let all = axes.points(&report.times, &report.values);
     let kept = thinned(all.len(), VALUES);
     let points: Vec<_> = kept.iter().map(|&i| all[i]).collect();
+    canvas.of(RECORDED);
     for (t, low, high) in error_bars(report) {
         let ends = (axes.at(t, low), axes.at(t, high));
         canvas.line(ends.0, ends.1, Pen::new(INK, 1.0));

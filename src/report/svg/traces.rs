@@ -12,6 +12,10 @@ const POINTS: usize = 24_000;
 const PANEL: f64 = 84.0;
 const ROW: f64 = PANEL + FONT + 18.0;
 
+/// What chains are called.
+const NAMES: [&str; 6] =
+    ["chain 1", "chain 2", "chain 3", "chain 4", "chain 5", "chain 6"];
+
 /// A panel for each parameter that has chains.
 pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
     let shown: Vec<&ParameterReport> = report
@@ -50,8 +54,6 @@ pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
 }
 
 fn entries(chains: usize) -> Vec<(Key, &'static str)> {
-    const NAMES: [&str; 6] =
-        ["chain 1", "chain 2", "chain 3", "chain 4", "chain 5", "chain 6"];
     let keys = NAMES.iter().zip(CHAINS);
     let mut out: Vec<_> = keys
         .take(chains)
@@ -70,7 +72,9 @@ fn scale(p: &ParameterReport) -> Scale {
 
 fn lines(canvas: &mut Canvas, axes: &Axes, p: &ParameterReport, most: usize) {
     canvas.clip(axes.frame);
-    for (chain, colour) in p.chains.iter().zip(CHAINS.into_iter().cycle()) {
+    let colours = CHAINS.into_iter().cycle();
+    for (i, (chain, colour)) in p.chains.iter().zip(colours).enumerate() {
+        canvas.of(NAMES.get(i).copied().unwrap_or_default());
         let kept = thinned(chain.len(), most).into_iter();
         let points: Vec<_> =
             kept.map(|i| axes.at(i as f64, chain[i])).collect();

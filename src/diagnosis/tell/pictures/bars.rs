@@ -1,7 +1,7 @@
 //! Mechanisms as bars of probability, with their Bayes factors.
 
 use super::figure::Figure;
-use crate::diagnosis::tell::phrases::{log10, probability};
+use crate::diagnosis::tell::phrases::{called, capital, log10, probability};
 use crate::diagnosis::{Diagnosis, Hypothesis, Judged};
 use crate::mechanism::Family;
 use crate::report::svg::axes::{Axes, Key, Labels, Scale, legend};
@@ -11,11 +11,12 @@ use crate::report::text::shorten;
 
 /// How many mechanisms have a bar.
 const SHOWN: usize = 12;
-const ROW: f64 = 25.0;
-/// Where names end, bars begin and end, and the two columns end.
-const NAMES: f64 = 156.0;
-const BARS: (f64, f64) = (166.0, 448.0);
-const COLUMNS: (f64, f64) = (534.0, WIDTH - 14.0);
+const ROW: f64 = 40.0;
+/// Where bars begin and end, and where the two columns end.
+const BARS: (f64, f64) = (12.0, WIDTH - 196.0);
+const COLUMNS: (f64, f64) = (WIDTH - 96.0, WIDTH - 14.0);
+/// How many letters of a name have room above its bar.
+const LETTERS: usize = 56;
 
 /// The mechanisms, most probable first; nothing where none was weighed.
 pub(crate) fn bars(d: &Diagnosis) -> Option<Figure> {
@@ -57,18 +58,19 @@ fn grid(canvas: &mut Canvas, axes: &Axes) {
 }
 
 fn row(canvas: &mut Canvas, axes: &Axes, d: &Diagnosis, m: &Judged, top: f64) {
-    let base = top + 0.5 * ROW + 4.5;
-    let name = shorten(&m.name, 20);
+    let (at, name) = ((BARS.0, top + FONT), capital(&called(m)));
+    let name = shorten(&name, LETTERS);
     if d.selected.contains(&m.name) {
-        canvas.bold((NAMES, base), Anchor::End, &name);
+        canvas.bold(at, Anchor::Start, &name);
     } else {
-        canvas.text((NAMES, base), Anchor::End, INK, &name);
+        canvas.text(at, Anchor::Start, INK, &name);
     }
     let p = if m.probability.is_finite() { m.probability } else { 0.0 };
     let left = axes.frame.left;
     // No bar is quite invisible.
     let right = axes.at(p.clamp(0.0, 1.0), 0.0).0.max(left + 1.5);
-    let (top, bottom) = (top + 4.0, top + ROW - 4.0);
+    let base = top + ROW - 9.0;
+    let (top, bottom) = (top + FONT + 7.0, top + ROW - 6.0);
     let bar = Frame { left, top, right, bottom };
     canvas.rectangle(bar, style(m.kind).1, 1.0);
     let text = probability(m.probability);

@@ -3,6 +3,7 @@
 use crate::report::svg::axes::{Axes, Scale};
 use crate::report::svg::canvas::{Canvas, Frame};
 use crate::report::svg::palette::MASS;
+use crate::report::svg::series::LOCATED;
 
 /// How strongly a located stretch is filled.
 const SHADE: f64 = 0.14;
@@ -24,6 +25,7 @@ pub(super) fn shade(
     stretches: &[(f64, f64)],
 ) {
     let Frame { top, bottom, .. } = axes.frame;
+    canvas.of(LOCATED);
     for &(from, to) in stretches {
         let low = from.max(axes.x.low);
         let high = to.min(axes.x.high);
@@ -32,6 +34,7 @@ pub(super) fn shade(
             canvas.rectangle(Frame { left, top, right, bottom }, MASS, SHADE);
         }
     }
+    canvas.of("");
 }
 
 /// A scale over the numbers, with some room at both ends.

@@ -11,12 +11,18 @@ use crate::physics::forces::Axis;
 use crate::report::svg::axes::{Axes, Key, Labels, Scale, legend};
 use crate::report::svg::canvas::{Anchor, Canvas, FONT, Frame, Point, WIDTH};
 use crate::report::svg::palette::{FULL, GREY, INK, MASS, POSTERIOR, Pen};
+use crate::report::svg::series::LOCATED;
 
 const LARGE: f64 = 230.0;
 const SMALL: f64 = 130.0;
 /// What the labels above and below a panel take.
 const ROOM: f64 = 78.0;
 const GAP: f64 = 26.0;
+
+/// What the series are called.
+const MEAN_FORCE: &str = "mean";
+const BAND: &str = "90 % band of the whole curve";
+const CLEAR: &str = "the band leaves zero out";
 
 const MEAN: Pen = Pen::new(POSTERIOR, 2.0);
 const SURE: Pen = Pen::new(MASS, 3.6);
@@ -62,12 +68,12 @@ fn main(forces: &[FreeForce]) -> Option<&FreeForce> {
 
 fn entries(d: &Diagnosis) -> Vec<(Key, &'static str)> {
     let mut out = vec![
-        (Key::Line(MEAN), "mean"),
-        (Key::Fill(FULL), "90 % band of the whole curve"),
-        (Key::Line(SURE), "the band leaves zero out"),
+        (Key::Line(MEAN), MEAN_FORCE),
+        (Key::Fill(FULL), BAND),
+        (Key::Line(SURE), CLEAR),
     ];
     if !d.mismatch.is_empty() {
-        out.push((Key::Fill("#f9e8dc"), "located stretch"));
+        out.push((Key::Fill("#f9e8dc"), LOCATED));
     }
     out
 }
@@ -98,9 +104,13 @@ fn panel(
     let (low, high) = bounds(f);
     canvas.clip(frame);
     let of = |y: &[f64]| axes.points(&f.at, y);
+    canvas.of(BAND);
     canvas.area(&of(&low), &of(&high), FULL, 0.85);
+    canvas.of(MEAN_FORCE);
     canvas.curve(&of(&f.mean), MEAN);
+    canvas.of(CLEAR);
     canvas.curve(&sure(&axes, f), SURE);
+    canvas.of("");
     canvas.line(axes.at(x.low, 0.0), axes.at(x.high, 0.0), ZERO);
     canvas.unclip();
     let (left, above) = (frame.left, frame.top - 8.0);

@@ -12,6 +12,9 @@ use crate::report::svg::canvas::{Canvas, FONT, Frame, Point, WIDTH};
 use crate::report::svg::palette::{
     FAINT, FLOW, FULL, INK, MASS, POSTERIOR, Pen,
 };
+use crate::report::svg::series::{
+    FLOWS, LOCATED, MEDIAN_FLOW, RECORDED, WITH_ERRORS,
+};
 use crate::report::svg::with_unit;
 use crate::report::text::{shorten, thinned};
 
@@ -78,13 +81,13 @@ fn rows(p: &Pictured) -> Vec<Axis> {
 
 fn entries(d: &Diagnosis) -> Vec<(Key, &'static str)> {
     let mut out = vec![
-        (Key::Dot(Pen::new(INK, 5.0)), "recording"),
-        (Key::Line(MEDIAN), "median flow"),
-        (Key::Fill(FLOW), "90 % of flows"),
-        (Key::Fill(FULL), "90 % with errors"),
+        (Key::Dot(Pen::new(INK, 5.0)), RECORDED),
+        (Key::Line(MEDIAN), MEDIAN_FLOW),
+        (Key::Fill(FLOW), FLOWS),
+        (Key::Fill(FULL), WITH_ERRORS),
     ];
     if !d.mismatch.is_empty() {
-        out.push((Key::Fill(MARKED), "located stretch"));
+        out.push((Key::Fill(MARKED), LOCATED));
     }
     out
 }
@@ -128,15 +131,21 @@ impl Panel<'_> {
         if !self.first {
             grid(canvas, &axes);
         }
-        let y = self.first.then_some(name.as_str());
-        axes.draw(canvas, Labels { x: Some(x), y });
+        let shown = self.first.then_some(name.as_str());
+        axes.draw(canvas, Labels { x: Some(x), y: shown });
+        axes.describe(canvas, [x, &name]);
         canvas.clip(frame);
         let b = self.bands;
         let edge = |v: &[f64]| self.edge(&axes, v);
+        canvas.of(WITH_ERRORS);
         canvas.area(&edge(&b.full_low), &edge(&b.full_high), FULL, 0.9);
+        canvas.of(FLOWS);
         canvas.area(&edge(&b.flow_low), &edge(&b.flow_high), FLOW, 0.9);
+        canvas.of(MEDIAN_FLOW);
         canvas.curve(&edge(&b.median), MEDIAN);
+        canvas.of(RECORDED);
         self.dots(canvas, &axes);
+        canvas.of(LOCATED);
         // The edges of the stretch lie over the bands, which hide its fill.
         for x in stretches.iter().flat_map(|s| [s.0, s.1]) {
             let ends = (axes.at(x, axes.y.low), axes.at(x, axes.y.high));
