@@ -30,7 +30,7 @@ pub use origin::Origin;
 #[cfg(feature = "pages")]
 pub use page::page;
 #[cfg(feature = "pages")]
-pub(crate) use page::{figure, how_computed, noise_table, standalone};
+pub(crate) use page::{drawn, figure, how_computed, noise_table, standalone};
 pub use svg::{Picture, pictures};
 pub use terminal::{picture, table};
 pub use words::in_words;

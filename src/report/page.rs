@@ -218,12 +218,20 @@ fn row(p: &ParameterReport) -> Markup {
     }
 }
 
+/// A picture for a page, and where there is one for a narrow screen.
+pub(crate) fn drawn(page: &str, phone: &str) -> Markup {
+    html! {
+        div.wide.page[!phone.is_empty()] { (PreEscaped(page)) }
+        @if !phone.is_empty() { div.phone { (PreEscaped(phone)) } }
+    }
+}
+
 /// A picture under its heading, with its caption.
 pub(crate) fn figure(picture: &Picture) -> Markup {
     html! {
         h2 { (picture.title) }
         figure id=(picture.name) {
-            div.wide { (PreEscaped(&picture.svg)) }
+            (drawn(&picture.svg, &picture.phone))
             figcaption { (picture.caption) }
         }
     }

@@ -1,7 +1,7 @@
 //! The diagnosis as one HTML page that needs no network; without its script it
 //! says the same.
 
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 
 use crate::diagnosis::tell::phrases::{
     called, capital, friction, interval, is_corrected, noise_row, probability,
@@ -15,7 +15,7 @@ use crate::diagnosis::{
 };
 use crate::report::digits::{beside, significant};
 use crate::report::text::{is_synthetic, plain, unit};
-use crate::report::{how_computed, noise_table, standalone};
+use crate::report::{drawn, how_computed, noise_table, standalone};
 
 /// `report.html` of a diagnosis: in words first, then what was located, both
 /// models on the recordings, the evidence, and the corrected model.
@@ -168,7 +168,7 @@ fn section(title: &str, figure: Option<Figure>) -> Markup {
     html! {
         h2 { (title) }
         figure id=(figure.id) {
-            div.wide { (PreEscaped(&figure.svg)) }
+            (drawn(&figure.svg, &figure.phone))
             figcaption { (figure.caption) }
         }
     }

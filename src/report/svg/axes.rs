@@ -141,7 +141,7 @@ impl Axes {
             let half = 0.5 * text_width(&label);
             let tick = Pen::new(GREY, 1.0);
             canvas.line((x, bottom), (x, bottom + 4.0), tick);
-            if x - half > free && x + half < WIDTH {
+            if x - half > free && x + half < canvas.width() {
                 let at = (x, bottom + 5.0 + FONT);
                 canvas.text(at, Anchor::Middle, GREY, &label);
                 free = x + half + 6.0;
@@ -201,7 +201,7 @@ pub(crate) fn legend(
     let (mut x, mut y) = (left, top + FONT);
     for (key, text) in entries {
         let width = 32.0 + text_width(text) + 14.0;
-        if x > left && x + width > WIDTH {
+        if x > left && x + width > canvas.width() {
             (x, y) = (left, y + FONT + 6.0);
         }
         canvas.key(text, |canvas| {

@@ -60,6 +60,7 @@ pub fn box_plots(
         name,
         title,
         caption: caption.to_owned(),
+        phone: String::new(),
         svg: canvas.finish(title),
     }
 }

@@ -10,8 +10,30 @@ use crate::report::text::escape;
 
 /// The font size of all text [px at full size].
 pub(crate) const FONT: f64 = 13.0;
-/// The width of every picture.
+/// The width of pictures that are drawn for a page alone.
 pub(crate) const WIDTH: f64 = 640.0;
+
+/// What a picture is drawn for: on a page panels stand side by side.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Sheet {
+    Page,
+    Phone,
+}
+
+impl Sheet {
+    /// How wide it is, so that text has the size of the text around it.
+    pub(crate) fn width(self) -> f64 {
+        match self {
+            Self::Page => WIDTH,
+            Self::Phone => 360.0,
+        }
+    }
+
+    /// So many columns where there is room for them.
+    pub(crate) fn columns(self, most: usize) -> usize {
+        if self == Self::Page { most } else { 1 }
+    }
+}
 
 /// A point on the canvas, y downwards.
 pub(crate) type Point = (f64, f64);
@@ -55,6 +77,7 @@ pub(crate) struct Ends<'a> {
 #[derive(Debug)]
 pub(crate) struct Canvas {
     name: String,
+    width: f64,
     height: f64,
     clips: usize,
     /// What is being drawn, as the legend names it; empty for the rest.
@@ -75,15 +98,28 @@ pub(crate) fn text_width(text: &str) -> f64 {
 }
 
 impl Canvas {
-    /// An empty canvas; the name makes its identifiers unique on a page.
+    /// An empty canvas for a page; the name makes its identifiers unique.
     pub(crate) fn new(name: impl Into<String>, height: f64) -> Self {
-        Self {
-            name: name.into(),
-            height,
-            clips: 0,
-            series: "",
-            body: String::new(),
+        Self::on(Sheet::Page, name, height)
+    }
+
+    /// The same for a sheet.
+    pub(crate) fn on(
+        sheet: Sheet,
+        name: impl Into<String>,
+        height: f64,
+    ) -> Self {
+        let mut name = name.into();
+        if sheet == Sheet::Phone {
+            name.push_str("-phone");
         }
+        let (width, body) = (sheet.width(), String::new());
+        Self { name, width, height, clips: 0, series: "", body }
+    }
+
+    /// How wide it is.
+    pub(crate) fn width(&self) -> f64 {
+        self.width
     }
 
     /// From here on what is drawn is of a series, by its name in the legend,
@@ -285,13 +321,14 @@ impl Canvas {
     /// The document, with what a screen reader says about it.
     pub(crate) fn finish(self, title: &str) -> String {
         let (title, height) = (escape(title), number(self.height));
+        let width = number(self.width);
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" \
-             aria-label=\"{title}\" viewBox=\"0 0 {WIDTH} {height}\" \
+             aria-label=\"{title}\" viewBox=\"0 0 {width} {height}\" \
              font-family=\"system-ui, 'Helvetica Neue', Arial, \
              'DejaVu Sans', sans-serif\" font-size=\"{FONT}\">\n\
              <title>{title}</title>\n\
-             <rect width=\"{WIDTH}\" height=\"{height}\" fill=\"#fff\"/>\n\
+             <rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n\
              {}</svg>\n",
             self.body
         )

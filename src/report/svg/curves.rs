@@ -54,6 +54,7 @@ pub fn curves(
         name,
         title,
         caption: caption.to_owned(),
+        phone: String::new(),
         svg: canvas.finish(title),
     }
 }

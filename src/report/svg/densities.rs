@@ -1,7 +1,7 @@
 //! Prior and posterior density of each parameter, a panel each.
 
 use super::axes::{Axes, Key, Labels, Scale, legend};
-use super::canvas::{Canvas, Frame, Point, WIDTH};
+use super::canvas::{Canvas, Frame, Point, Sheet};
 use super::palette::{FLOW, POSTERIOR, PRIOR, Pen};
 use super::{Picture, with_unit};
 use crate::report::text::{shorten, thinned};
@@ -17,7 +17,10 @@ const PRIOR_LINE: Pen = Pen::new(PRIOR, 1.8).dashed();
 const POSTERIOR_LINE: Pen = Pen::new(POSTERIOR, 1.8);
 
 /// A panel for each parameter that has a density.
-pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
+pub(super) fn draw(
+    report: &CalibrationReport,
+    sheet: Sheet,
+) -> Option<Picture> {
     let shown: Vec<&ParameterReport> = report
         .parameters
         .iter()
@@ -26,20 +29,20 @@ pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
     if shown.is_empty() {
         return None;
     }
-    let columns = match shown.len() {
+    let columns = sheet.columns(match shown.len() {
         1 => 1,
         2 | 4 => 2,
         _ => 3,
-    };
+    });
     let rows = shown.len().div_ceil(columns);
-    let mut canvas = Canvas::new("densities", 30.0 + ROW * rows as f64);
+    let mut canvas = Canvas::on(sheet, "densities", 30.0 + ROW * rows as f64);
     let keys = [
         (Key::Line(POSTERIOR_LINE), "posterior"),
         (Key::Line(PRIOR_LINE), "prior"),
         (Key::Fill(FLOW), "90 % interval"),
     ];
     let top = legend(&mut canvas, 12.0, 2.0, &keys);
-    let width = (WIDTH - 24.0 + GAP) / columns as f64;
+    let width = (sheet.width() - 24.0 + GAP) / columns as f64;
     for (i, p) in shown.into_iter().enumerate() {
         let left = 12.0 + width * (i % columns) as f64;
         let top = top + 4.0 + ROW * (i / columns) as f64;
@@ -55,6 +58,7 @@ pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
              recording has taught nothing. Each panel has its own scale; a \
              prior that is wider is cut off."
             .to_owned(),
+        phone: String::new(),
         svg: canvas.finish("Prior and posterior density of each parameter"),
     })
 }

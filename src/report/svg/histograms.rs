@@ -53,7 +53,13 @@ pub fn histograms(
         draw(&mut canvas, frame, y, panel);
     }
     let caption = caption.to_owned();
-    Picture { name, title, caption, svg: canvas.finish(title) }
+    Picture {
+        name,
+        title,
+        caption,
+        phone: String::new(),
+        svg: canvas.finish(title),
+    }
 }
 
 /// The count to be expected in a bin, and how far the band goes from it.

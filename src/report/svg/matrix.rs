@@ -62,6 +62,7 @@ pub fn matrix(
         name,
         title,
         caption: caption.to_owned(),
+        phone: String::new(),
         svg: canvas.finish(title),
     }
 }

@@ -27,6 +27,7 @@ pub use histograms::{Histogram, histograms};
 pub use matrix::{Matrix, matrix};
 pub use reliability::{Bin, reliability};
 
+use self::canvas::Sheet;
 use super::{CalibrationReport, text};
 
 /// A picture with what the reader has to know to read it.
@@ -40,6 +41,8 @@ pub struct Picture {
     pub caption: String,
     /// The SVG document.
     pub svg: String,
+    /// The same for a narrow screen; empty where there is none.
+    pub phone: String,
 }
 
 /// All pictures for which the report has data, in the order to be read.
@@ -52,17 +55,21 @@ pub struct Picture {
 /// assert_eq!(pictures(&report)[0].name, "recording");
 /// ```
 pub fn pictures(report: &CalibrationReport) -> Vec<Picture> {
-    [
-        recording::draw(report),
-        track::draw(report),
-        densities::draw(report),
-        pairs::draw(report),
-        traces::draw(report),
-        residuals::draw(report),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    type Draw = fn(&CalibrationReport, Sheet) -> Option<Picture>;
+    let all: [Draw; 6] = [
+        recording::draw,
+        track::draw,
+        densities::draw,
+        pairs::draw,
+        traces::draw,
+        residuals::draw,
+    ];
+    let both = |draw: Draw| {
+        let page = draw(report, Sheet::Page)?;
+        let phone = draw(report, Sheet::Phone)?.svg;
+        Some(Picture { phone, ..page })
+    };
+    all.into_iter().filter_map(both).collect()
 }
 
 /// `name [unit]`, or the name alone for a number without a unit.

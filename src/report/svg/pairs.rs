@@ -2,7 +2,7 @@
 
 use super::Picture;
 use super::axes::Scale;
-use super::canvas::{Anchor, Canvas, FONT, Frame, Point, WIDTH};
+use super::canvas::{Anchor, Canvas, FONT, Frame, Point, Sheet};
 use super::palette::{FLOW, GREY, INK, POSTERIOR, Pen};
 use crate::report::digits::ticks;
 use crate::report::text::{plain, shorten, thinned, wrap};
@@ -17,17 +17,20 @@ const GAP: f64 = 8.0;
 const LEFT: f64 = 12.0;
 
 /// The pairs of the first parameters, where there are two or more.
-pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
+pub(super) fn draw(
+    report: &CalibrationReport,
+    sheet: Sheet,
+) -> Option<Picture> {
     let all: Vec<&ParameterReport> =
         report.parameters.iter().filter(|p| p.pooled.len() > 1).collect();
     let shown = &all[..all.len().min(PAIRED)];
     if shown.len() < 2 {
         return None;
     }
-    let side = (WIDTH - 2.0 * LEFT) / shown.len() as f64;
+    let side = (sheet.width() - 2.0 * LEFT) / shown.len() as f64;
     let tall = side.min(150.0);
     let height = tall * shown.len() as f64 + 2.0 * FONT + 12.0;
-    let mut canvas = Canvas::new("pairs", height);
+    let mut canvas = Canvas::on(sheet, "pairs", height);
     for (row, a) in shown.iter().enumerate() {
         for (column, b) in shown.iter().enumerate() {
             let left = LEFT + side * column as f64;
@@ -52,6 +55,7 @@ pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
         name: "pairs",
         title: "Pairs of parameters",
         caption: caption(shown.len(), all.len()),
+        phone: String::new(),
         svg: canvas.finish("Draws of each pair of parameters"),
     })
 }
@@ -175,7 +179,7 @@ fn foot(canvas: &mut Canvas, frame: Frame, p: &ParameterReport) {
         let half = 0.5 * super::canvas::text_width(&label);
         let tick = Pen::new(GREY, 1.0);
         canvas.line((x, frame.bottom), (x, frame.bottom + 4.0), tick);
-        if x - half > free.max(frame.left - GAP) && x + half < WIDTH {
+        if x - half > free.max(frame.left - GAP) && x + half < canvas.width() {
             let at = (x, frame.bottom + 5.0 + FONT);
             canvas.text(at, Anchor::Middle, GREY, &label);
             free = x + half + 4.0;

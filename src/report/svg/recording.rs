@@ -1,9 +1,9 @@
 //! The recording over time with its predictive bands.
 
 use super::axes::{Axes, Key, Labels, Scale, legend};
-use super::canvas::{Canvas, Frame, WIDTH};
+use super::canvas::{Canvas, Frame, Sheet};
 use super::palette::{FLOW, FULL, INK, POSTERIOR, PRIOR, Pen};
-use super::series::{FLOWS, MEDIAN_FLOW, RECORDED, WITH_ERRORS};
+use super::series::{FLOWS, MEDIAN_FLOW, RECORDED, WITH_ERRORS, least};
 use super::{Picture, with_unit};
 use crate::report::text::{shorten, thinned};
 use crate::report::{Bands, CalibrationReport};
@@ -23,15 +23,18 @@ const MEDIAN: Pen = Pen::new(POSTERIOR, 2.0);
 const PRIOR_EDGE: Pen = Pen::new(PRIOR, 1.5).dashed();
 
 /// The recording with its bands, where there is a recording.
-pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
+pub(super) fn draw(
+    report: &CalibrationReport,
+    sheet: Sheet,
+) -> Option<Picture> {
     if report.times.is_empty() || report.values.is_empty() {
         return None;
     }
-    let mut canvas = Canvas::new("recording", HEIGHT);
+    let mut canvas = Canvas::on(sheet, "recording", HEIGHT);
     let y = value_scale(report);
     let left = Axes::margin(y, HEIGHT - 110.0);
     let top = legend(&mut canvas, left, 2.0, &entries(report));
-    let (right, bottom) = (WIDTH - 14.0, HEIGHT - 46.0);
+    let (right, bottom) = (sheet.width() - 14.0, HEIGHT - 46.0);
     let frame = Frame { left, right, top, bottom };
     let times = report.times.iter().chain(&report.bands.times);
     let axes = Axes { frame, x: Scale::of(times.copied()).padded(0.01), y };
@@ -39,7 +42,7 @@ pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
     let labels = Labels { x: Some("time [s]"), y: Some(&name) };
     axes.draw(&mut canvas, labels);
     canvas.clip(frame);
-    draw_fills(&mut canvas, &axes, &report.bands);
+    draw_fills(&mut canvas, &axes, report);
     if let Some(prior) = &report.prior_bands {
         draw_edges(&mut canvas, &axes, prior);
     }
@@ -50,6 +53,7 @@ pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
         name: "recording",
         title: "Recording and prediction",
         caption: caption(report, shown),
+        phone: String::new(),
         svg: canvas.finish("The recording over time with predictive bands"),
     })
 }
@@ -70,18 +74,24 @@ fn entries(report: &CalibrationReport) -> Vec<(Key, &'static str)> {
 /// Recording and posterior in full, and of the prior what is near them.
 fn value_scale(report: &CalibrationReport) -> Scale {
     let b = &report.bands;
-    let posterior = report.values.iter().chain(&b.full_low);
-    let posterior = posterior.chain(&b.full_high).chain(&b.median);
+    let least = least(&report.quantity);
+    let posterior = b.full_low.iter().chain(&b.full_high).chain(&b.median);
+    let posterior = posterior.map(|value| value.max(least));
     let bars = error_bars(report).flat_map(|(_, low, high)| [low, high]);
-    let base = Scale::of(posterior.copied().chain(bars)).padded(0.04);
+    let values = report.values.iter().copied().chain(bars);
+    let base = Scale::of(values.chain(posterior)).padded(0.04);
     let Some(prior) = &report.prior_bands else { return base };
     let edges = prior.flow_low.iter().chain(&prior.flow_high);
     let prior = Scale::of(edges.copied()).padded(0.02);
     prior.within(base.padded(0.35)).with(base)
 }
 
-fn draw_fills(canvas: &mut Canvas, axes: &Axes, b: &Bands) {
-    let edge = |v: &[f64]| edge(axes, &b.times, v);
+fn draw_fills(canvas: &mut Canvas, axes: &Axes, report: &CalibrationReport) {
+    let (b, least) = (&report.bands, least(&report.quantity));
+    let cut = |v: &[f64]| -> Vec<f64> {
+        v.iter().map(|value| value.max(least)).collect()
+    };
+    let edge = |v: &[f64]| edge(axes, &b.times, &cut(v));
     canvas.of(WITH_ERRORS);
     canvas.area(&edge(&b.full_low), &edge(&b.full_high), FULL, 1.0);
     canvas.of(FLOWS);

@@ -55,6 +55,7 @@ pub fn reliability(
         name,
         title,
         caption: caption.to_owned(),
+        phone: String::new(),
         svg: canvas.finish(title),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Picture;
 use super::axes::{Axes, Key, Labels, Scale, legend};
-use super::canvas::{Canvas, Frame, WIDTH};
+use super::canvas::{Canvas, Frame, Sheet};
 use super::palette::{GREY, INK, MASS, POSTERIOR, Pen};
 use crate::report::CalibrationReport;
 use crate::report::text::thinned;
@@ -19,7 +19,10 @@ const DOT: Pen = Pen::new(INK, 5.0);
 const BOUND: Pen = Pen::new(MASS, 1.5).dashed();
 
 /// The residuals, where there are any.
-pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
+pub(super) fn draw(
+    report: &CalibrationReport,
+    sheet: Sheet,
+) -> Option<Picture> {
     let values = &report.innovations;
     let count = values.len().min(report.innovation_times.len());
     if count == 0 {
@@ -27,7 +30,8 @@ pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
     }
     let lags = report.autocorrelation.len().min(LAGS);
     let lower = if lags > 0 { LOWER + BETWEEN } else { 0.0 };
-    let mut canvas = Canvas::new("residuals", 34.0 + UPPER + 46.0 + lower);
+    let mut canvas =
+        Canvas::on(sheet, "residuals", 34.0 + UPPER + 46.0 + lower);
     let left = 62.0;
     let mut keys = vec![
         (Key::Dot(DOT), "innovation"),
@@ -37,7 +41,7 @@ pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
         keys.push((Key::Fill(POSTERIOR), "autocorrelation"));
     }
     let top = legend(&mut canvas, left, 2.0, &keys);
-    let (right, bottom) = (WIDTH - 14.0, top + UPPER);
+    let (right, bottom) = (sheet.width() - 14.0, top + UPPER);
     over_time(&mut canvas, Frame { left, top, right, bottom }, report);
     if lags > 0 {
         let top = bottom + BETWEEN;
@@ -49,6 +53,7 @@ pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
         name: "residuals",
         title: "Residuals",
         caption: caption(count, lags, report.autocorrelation.len()),
+        phone: String::new(),
         svg: canvas.finish("Standardised innovations, autocorrelation"),
     })
 }

@@ -1,7 +1,7 @@
 //! The draws of each parameter in the order in which the chains made them.
 
 use super::axes::{Axes, Key, Labels, Scale, legend};
-use super::canvas::{Canvas, FONT, Frame, WIDTH};
+use super::canvas::{Canvas, FONT, Frame, Sheet};
 use super::palette::{CHAINS, Pen};
 use super::{Picture, with_unit};
 use crate::report::text::{shorten, thinned};
@@ -17,7 +17,10 @@ const NAMES: [&str; 6] =
     ["chain 1", "chain 2", "chain 3", "chain 4", "chain 5", "chain 6"];
 
 /// A panel for each parameter that has chains.
-pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
+pub(super) fn draw(
+    report: &CalibrationReport,
+    sheet: Sheet,
+) -> Option<Picture> {
     let shown: Vec<&ParameterReport> = report
         .parameters
         .iter()
@@ -27,7 +30,7 @@ pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
     let longest = shown.iter().flat_map(|p| &p.chains).map(Vec::len).max()?;
     let most = (POINTS / (chains * shown.len())).clamp(60, 600);
     let height = 30.0 + ROW * shown.len() as f64 + 2.0 * FONT + 14.0;
-    let mut canvas = Canvas::new("traces", height);
+    let mut canvas = Canvas::on(sheet, "traces", height);
     let top = legend(&mut canvas, 12.0, 2.0, &entries(chains));
     let scales: Vec<Scale> = shown.iter().map(|p| scale(p)).collect();
     let margins = scales.iter().map(|y| Axes::margin(*y, PANEL) - 18.0);
@@ -35,7 +38,7 @@ pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
     let x = Scale { low: 0.0, high: (longest - 1).max(1) as f64 };
     for (i, (p, y)) in shown.iter().zip(scales).enumerate() {
         let top = top + FONT + 6.0 + ROW * i as f64;
-        let (right, bottom) = (WIDTH - 14.0, top + PANEL);
+        let (right, bottom) = (sheet.width() - 14.0, top + PANEL);
         let frame = Frame { left, top, right, bottom };
         let axes = Axes { frame, x, y };
         let last = i + 1 == shown.len();
@@ -49,6 +52,7 @@ pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
         name: "traces",
         title: "Traces",
         caption: caption(longest, most),
+        phone: String::new(),
         svg: canvas.finish("The draws of each chain in their order"),
     })
 }

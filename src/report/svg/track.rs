@@ -2,7 +2,7 @@
 
 use super::Picture;
 use super::axes::{Axes, Key, Labels, Scale, legend};
-use super::canvas::{Anchor, Canvas, Frame, Point, WIDTH, text_width};
+use super::canvas::{Anchor, Canvas, Frame, Point, Sheet, text_width};
 use super::palette::{GREY, INK, MASS, Pen};
 use crate::report::digits::short;
 use crate::report::text::thinned;
@@ -18,17 +18,20 @@ const DOT: Pen = Pen::new(MASS, 8.0);
 const REST: Pen = Pen::new(INK, 11.0);
 
 /// The track with the mass on it, where it has at least two points.
-pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
+pub(super) fn draw(
+    report: &CalibrationReport,
+    sheet: Sheet,
+) -> Option<Picture> {
     let track = &report.track;
     if track.x.len().min(track.z.len()) < 2 {
         return None;
     }
     let (x, y) = (across(track), upwards(track));
     let left = Axes::margin(y, 250.0);
-    let right = WIDTH - 22.0;
+    let right = sheet.width() - 22.0;
     let true_height = (right - left) * y.span() / x.span();
     let height = true_height.clamp(150.0, 400.0);
-    let mut canvas = Canvas::new("track", height + 84.0);
+    let mut canvas = Canvas::on(sheet, "track", height + 84.0);
     let top = legend(&mut canvas, left, 2.0, &entries(track)).max(26.0);
     let frame = Frame { left, right, top, bottom: top + height };
     let axes = Axes { frame, x, y };
@@ -47,6 +50,7 @@ pub(super) fn draw(report: &CalibrationReport) -> Option<Picture> {
         name: "track",
         title: "Track",
         caption: caption(track, height / true_height),
+        phone: String::new(),
         svg: canvas.finish("The track with the mass on it at some times"),
     })
 }
@@ -101,7 +105,7 @@ fn label(
     (x, y): Point,
 ) {
     let text = format!("{} s", short(t, 3));
-    let fits = x + 8.0 + text_width(&text) < WIDTH;
+    let fits = x + 8.0 + text_width(&text) < canvas.width();
     let low = if fits { (x + 8.0, y - 7.0) } else { (x - 2.0, y - 12.0) };
     let at = (low.0, low.1.max(axes.frame.top));
     let apart = |other: &Point| {

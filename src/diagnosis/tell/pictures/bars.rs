@@ -5,31 +5,40 @@ use crate::diagnosis::tell::phrases::{called, capital, log10, probability};
 use crate::diagnosis::{Diagnosis, Hypothesis, Judged};
 use crate::mechanism::Family;
 use crate::report::svg::axes::{Axes, Key, Labels, Scale, legend};
-use crate::report::svg::canvas::{Anchor, Canvas, FONT, Frame, WIDTH};
+use crate::report::svg::canvas::{
+    Anchor, Canvas, FONT, Frame, Sheet, text_width,
+};
 use crate::report::svg::palette::{FAINT, GREY, INK, Pen};
 use crate::report::text::shorten;
 
 /// How many mechanisms have a bar.
 const SHOWN: usize = 12;
 const ROW: f64 = 40.0;
-/// Where bars begin and end, and where the two columns end.
-const BARS: (f64, f64) = (12.0, WIDTH - 196.0);
-const COLUMNS: (f64, f64) = (WIDTH - 96.0, WIDTH - 14.0);
-/// How many letters of a name have room above its bar.
-const LETTERS: usize = 56;
+/// Where bars begin, and how far from the right they and the first column of
+/// numbers end.
+const LEFT: f64 = 12.0;
+const BESIDE: f64 = 164.0;
+const COLUMN: f64 = 84.0;
+/// Where the second column ends, from the right.
+const LAST: f64 = 14.0;
 
 /// The mechanisms, most probable first; nothing where none was weighed.
 pub(crate) fn bars(d: &Diagnosis) -> Option<Figure> {
+    Figure::both(|sheet| drawn(d, sheet))
+}
+
+fn drawn(d: &Diagnosis, sheet: Sheet) -> Option<Figure> {
     let shown = &d.mechanisms[..d.mechanisms.len().min(SHOWN)];
     if shown.is_empty() {
         return None;
     }
     let head = 2.0 * FONT + 46.0;
     let height = head + ROW * shown.len() as f64 + 52.0;
-    let mut canvas = Canvas::new("mechanisms", height);
+    let mut canvas = Canvas::on(sheet, "mechanisms", height);
     legend(&mut canvas, 12.0, 2.0, &entries(shown));
     let bottom = height - 52.0;
-    let frame = Frame { left: BARS.0, right: BARS.1, top: head, bottom };
+    let (right, width) = (sheet.width() - BESIDE, sheet.width());
+    let frame = Frame { left: LEFT, right, top: head, bottom };
     let axes = Axes {
         frame,
         x: Scale { low: 0.0, high: 1.0 },
@@ -37,7 +46,7 @@ pub(crate) fn bars(d: &Diagnosis) -> Option<Figure> {
     };
     grid(&mut canvas, &axes);
     axes.draw(&mut canvas, Labels { x: Some("probability"), y: None });
-    for (text, x) in [("probability", COLUMNS.0), ("log10 BF", COLUMNS.1)] {
+    for (text, x) in [("prob.", width - COLUMN), ("log10 BF", width - LAST)] {
         canvas.text((x, head - 8.0), Anchor::End, GREY, text);
     }
     for (i, m) in shown.iter().enumerate() {
@@ -46,6 +55,7 @@ pub(crate) fn bars(d: &Diagnosis) -> Option<Figure> {
     Some(Figure {
         id: "mechanisms".to_owned(),
         caption: caption(d),
+        phone: String::new(),
         svg: canvas.finish("The probability of each mechanism"),
     })
 }
@@ -58,8 +68,10 @@ fn grid(canvas: &mut Canvas, axes: &Axes) {
 }
 
 fn row(canvas: &mut Canvas, axes: &Axes, d: &Diagnosis, m: &Judged, top: f64) {
-    let (at, name) = ((BARS.0, top + FONT), capital(&called(m)));
-    let name = shorten(&name, LETTERS);
+    let width = canvas.width();
+    let letters = ((width - LEFT - LAST) / text_width("n")) as usize;
+    let (at, name) = ((LEFT, top + FONT), capital(&called(m)));
+    let name = shorten(&name, letters);
     if d.selected.contains(&m.name) {
         canvas.bold(at, Anchor::Start, &name);
     } else {
@@ -74,12 +86,12 @@ fn row(canvas: &mut Canvas, axes: &Axes, d: &Diagnosis, m: &Judged, top: f64) {
     let bar = Frame { left, top, right, bottom };
     canvas.rectangle(bar, style(m.kind).1, 1.0);
     let text = probability(m.probability);
-    canvas.text((COLUMNS.0, base), Anchor::End, INK, &text);
+    canvas.text((width - COLUMN, base), Anchor::End, INK, &text);
     let text = match m.kind {
         Hypothesis::Baseline => "0".to_owned(),
         _ => log10(m.log10_bayes_factor).replace('-', "−"),
     };
-    canvas.text((COLUMNS.1, base), Anchor::End, INK, &text);
+    canvas.text((width - LAST, base), Anchor::End, INK, &text);
 }
 
 /// What bars of a kind are called, and their colour, told apart by the

@@ -1,7 +1,7 @@
 //! A picture, and what several of them draw.
 
 use crate::report::svg::axes::{Axes, Scale};
-use crate::report::svg::canvas::{Canvas, Frame};
+use crate::report::svg::canvas::{Canvas, Frame, Sheet};
 use crate::report::svg::palette::MASS;
 use crate::report::svg::series::LOCATED;
 
@@ -16,6 +16,18 @@ pub(crate) struct Figure {
     #[cfg_attr(not(feature = "pages"), expect(dead_code))]
     pub(crate) caption: String,
     pub(crate) svg: String,
+    /// The same for a narrow screen.
+    #[cfg_attr(not(feature = "pages"), expect(dead_code))]
+    pub(crate) phone: String,
+}
+
+impl Figure {
+    /// A picture for a page, and for a narrow screen.
+    pub(super) fn both(drawn: impl Fn(Sheet) -> Option<Self>) -> Option<Self> {
+        let page = drawn(Sheet::Page)?;
+        let phone = drawn(Sheet::Phone)?.svg;
+        Some(Self { phone, ..page })
+    }
 }
 
 /// Fills the stretches of a panel in which the mismatch lies.

@@ -9,7 +9,7 @@ use crate::diagnosis::tell::phrases::log10;
 use crate::diagnosis::{Diagnosis, FreeForce};
 use crate::physics::forces::Axis;
 use crate::report::svg::axes::{Axes, Key, Labels, Scale, legend};
-use crate::report::svg::canvas::{Anchor, Canvas, FONT, Frame, Point, WIDTH};
+use crate::report::svg::canvas::{Anchor, Canvas, FONT, Frame, Point, Sheet};
 use crate::report::svg::palette::{FULL, GREY, INK, MASS, POSTERIOR, Pen};
 use crate::report::svg::series::LOCATED;
 
@@ -30,24 +30,31 @@ const ZERO: Pen = Pen::new(INK, 1.3);
 
 /// The forces that were inferred, where there are any.
 pub(crate) fn forces(d: &Diagnosis) -> Option<Figure> {
+    Figure::both(|sheet| drawn(d, sheet))
+}
+
+fn drawn(d: &Diagnosis, sheet: Sheet) -> Option<Figure> {
     let large = main(&d.forces)?;
     let small: Vec<&FreeForce> =
         d.forces.iter().filter(|f| f.axis != large.axis).collect();
-    let below = if small.is_empty() { 0.0 } else { SMALL + ROOM };
-    let head = 2.0 * FONT + 14.0;
-    let mut canvas = Canvas::new("force", head + LARGE + ROOM + below);
+    let columns = sheet.columns(small.len().max(1));
+    let below = (SMALL + ROOM) * small.len().div_ceil(columns) as f64;
+    let lines = if sheet == Sheet::Page { 2.0 } else { 4.0 };
+    let head = lines * (FONT + 6.0) + 2.0;
+    let height = head + LARGE + ROOM + below;
+    let mut canvas = Canvas::on(sheet, "force", height);
     legend(&mut canvas, 12.0, 2.0, &entries(d));
     let stretches = |f: &FreeForce| along(&d.mismatch, f.axis);
     let y = scale(large);
     let (left, top) = (Axes::margin(y, LARGE), head + 22.0);
-    let (right, bottom) = (WIDTH - 14.0, top + LARGE);
+    let (right, bottom) = (sheet.width() - 14.0, top + LARGE);
     let frame = Frame { left, top, right, bottom };
     panel(&mut canvas, frame, large, &stretches(large));
-    let width = (WIDTH - 12.0) / small.len().max(1) as f64;
+    let width = (sheet.width() - 12.0) / columns as f64;
     for (i, force) in small.into_iter().enumerate() {
         let margin = Axes::margin(scale(force), SMALL);
-        let start = 4.0 + width * i as f64;
-        let top = bottom + ROOM;
+        let start = 4.0 + width * (i % columns) as f64;
+        let top = bottom + ROOM + (SMALL + ROOM) * (i / columns) as f64;
         let (left, right) = (start + margin, start + width - GAP);
         let frame = Frame { left, top, right, bottom: top + SMALL };
         panel(&mut canvas, frame, force, &stretches(force));
@@ -55,6 +62,7 @@ pub(crate) fn forces(d: &Diagnosis) -> Option<Figure> {
     Some(Figure {
         id: "force".to_owned(),
         caption: caption(d),
+        phone: String::new(),
         svg: canvas.finish("The free-form force with its band"),
     })
 }
@@ -117,7 +125,7 @@ fn panel(
     canvas.heading((left, above), over);
     let factor = log10(f.log_bayes_factor / LN_10).replace('-', "−");
     // A small panel has no room for more.
-    let small = frame.width() < 0.5 * WIDTH;
+    let small = frame.width() < 0.5 * Sheet::Page.width();
     let what = if small { "log10 BF" } else { "log10 Bayes factor" };
     let text = format!("{what} {factor}");
     canvas.text((frame.right, above), Anchor::End, GREY, &text);

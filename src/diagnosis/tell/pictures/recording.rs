@@ -8,12 +8,12 @@ use crate::physics::forces::Axis;
 use crate::predict::Bands;
 use crate::report::digits::ticks;
 use crate::report::svg::axes::{Axes, Key, Labels, Scale, legend};
-use crate::report::svg::canvas::{Canvas, FONT, Frame, Point, WIDTH};
+use crate::report::svg::canvas::{Canvas, FONT, Frame, Point, Sheet};
 use crate::report::svg::palette::{
     FAINT, FLOW, FULL, INK, MASS, POSTERIOR, Pen,
 };
 use crate::report::svg::series::{
-    FLOWS, LOCATED, MEDIAN_FLOW, RECORDED, WITH_ERRORS,
+    FLOWS, LOCATED, MEDIAN_FLOW, RECORDED, WITH_ERRORS, least,
 };
 use crate::report::svg::with_unit;
 use crate::report::text::{shorten, thinned};
@@ -34,31 +34,44 @@ pub(crate) fn recording(
     p: &Pictured,
     id: &str,
 ) -> Option<Figure> {
+    Figure::both(|sheet| drawn(d, p, id, sheet))
+}
+
+fn drawn(
+    d: &Diagnosis,
+    p: &Pictured,
+    id: &str,
+    sheet: Sheet,
+) -> Option<Figure> {
     if p.times.is_empty() || p.values.is_empty() {
         return None;
     }
     let columns = columns(p);
     let rows = rows(p);
-    let mut canvas =
-        Canvas::new(id, legend_height(d) + ROW * rows.len() as f64);
+    let side_by_side = sheet.columns(columns.len());
+    let lines = rows.len() * columns.len() / side_by_side;
+    let head = legend_height(d, sheet);
+    let mut canvas = Canvas::on(sheet, id, head + ROW * lines as f64);
     legend(&mut canvas, 12.0, 2.0, &entries(d));
     let y = value_scale(p, &columns);
     let margin = Axes::margin(y, PANEL);
-    let width = (WIDTH - margin - 14.0 + GAP) / columns.len() as f64;
-    for (i, row) in rows.iter().enumerate() {
-        for (j, (title, bands)) in columns.iter().enumerate() {
-            let left = margin + width * j as f64;
-            let top = legend_height(d) + ROW * i as f64 + 22.0;
-            let (right, bottom) = (left + width - GAP, top + PANEL);
-            let frame = Frame { left, top, right, bottom };
-            let panel = Panel { p, bands, over: *row, first: j == 0 };
-            canvas.heading((left, top - 8.0), title);
-            panel.draw(&mut canvas, frame, y, &along_in(d, p, *row));
-        }
+    let width = (sheet.width() - margin - 14.0 + GAP) / side_by_side as f64;
+    let panels =
+        rows.iter().flat_map(|row| columns.iter().map(move |c| (row, c)));
+    for (i, (row, (title, bands))) in panels.enumerate() {
+        let left = margin + width * (i % side_by_side) as f64;
+        let top = head + ROW * (i / side_by_side) as f64 + 22.0;
+        let (right, bottom) = (left + width - GAP, top + PANEL);
+        let frame = Frame { left, top, right, bottom };
+        let first = i % side_by_side == 0;
+        let panel = Panel { p, bands, over: *row, first };
+        canvas.heading((left, top - 8.0), title);
+        panel.draw(&mut canvas, frame, y, &along_in(d, p, *row));
     }
     Some(Figure {
         id: id.to_owned(),
         caption: caption(d, p),
+        phone: String::new(),
         svg: canvas.finish("The recording with the bands of both models"),
     })
 }
@@ -95,8 +108,13 @@ fn entries(d: &Diagnosis) -> Vec<(Key, &'static str)> {
 /// The colour that a shaded stretch has on white.
 const MARKED: &str = "#f9e8dc";
 
-fn legend_height(d: &Diagnosis) -> f64 {
-    if d.mismatch.is_empty() { FONT + 12.0 } else { 2.0 * FONT + 18.0 }
+fn legend_height(d: &Diagnosis, sheet: Sheet) -> f64 {
+    let lines = match (sheet, d.mismatch.is_empty()) {
+        (Sheet::Page, true) => 1.0,
+        (Sheet::Page, false) | (Sheet::Phone, true) => 2.0,
+        (Sheet::Phone, false) => 3.0,
+    };
+    lines * (FONT + 6.0) + 6.0
 }
 
 /// One scale for all panels, so that they can be compared.
@@ -104,7 +122,9 @@ fn value_scale(p: &Pictured, columns: &[(&str, &Bands)]) -> Scale {
     let bands = columns.iter().flat_map(|(_, b)| {
         [&b.full_low, &b.full_high, &b.median].into_iter().flatten()
     });
-    roomy(p.values.iter().chain(bands).copied())
+    let least = least(&p.quantity);
+    let bands = bands.map(|value| value.max(least));
+    roomy(p.values.iter().copied().chain(bands))
 }
 
 /// One panel: a recording, one model's bands, over one axis.
@@ -164,10 +184,11 @@ impl Panel<'_> {
 
     /// A line of the bands; over distance as far as the places are known.
     fn edge(&self, axes: &Axes, values: &[f64]) -> Vec<Point> {
-        let times = &self.bands.times;
+        let (times, least) = (&self.bands.times, least(&self.p.quantity));
         let kept = thinned(times.len().min(values.len()), TIMES);
         kept.into_iter()
-            .map(|i| axes.at(self.x_of(times[i]), values[i]))
+            .map(|i| (self.x_of(times[i]), values[i].max(least)))
+            .map(|(x, y)| axes.at(x, y))
             .collect()
     }
 

@@ -6,7 +6,7 @@ use crate::diagnosis::{Diagnosis, Pictured};
 use crate::report::digits::short;
 use crate::report::svg::axes::{Axes, Key, Labels, Scale, legend};
 use crate::report::svg::canvas::{
-    Anchor, Canvas, Frame, Point, WIDTH, text_width,
+    Anchor, Canvas, Frame, Point, Sheet, text_width,
 };
 use crate::report::svg::palette::{GREY, MASS, Pen};
 use crate::report::text::thinned;
@@ -21,15 +21,24 @@ const MARK: Pen = Pen::new(MASS, 6.0);
 
 /// The track of a recording, where it has at least two points.
 pub(crate) fn track(d: &Diagnosis, p: &Pictured, id: &str) -> Option<Figure> {
+    Figure::both(|sheet| drawn(d, p, id, sheet))
+}
+
+fn drawn(
+    d: &Diagnosis,
+    p: &Pictured,
+    id: &str,
+    sheet: Sheet,
+) -> Option<Figure> {
     let (x, z) = (&p.track.0, &p.track.1);
     if x.len().min(z.len()) < 2 {
         return None;
     }
     let up = Scale::of(z.iter().copied()).padded(0.10);
     let left = Axes::margin(up, 250.0);
-    let right = WIDTH - 22.0;
+    let right = sheet.width() - 22.0;
     let (across, height) = fitted(x, up, right - left);
-    let mut canvas = Canvas::new(id, height + 84.0);
+    let mut canvas = Canvas::on(sheet, id, height + 84.0);
     let top = legend(&mut canvas, left, 2.0, &entries(p)).max(26.0);
     let frame = Frame { left, right, top, bottom: top + height };
     let axes = Axes { frame, x: across, y: up };
@@ -46,6 +55,7 @@ pub(crate) fn track(d: &Diagnosis, p: &Pictured, id: &str) -> Option<Figure> {
     Some(Figure {
         id: id.to_owned(),
         caption: caption(p, stretched),
+        phone: String::new(),
         svg: canvas.finish("The track with the located stretch on it"),
     })
 }
@@ -89,7 +99,7 @@ fn mark(canvas: &mut Canvas, axes: &Axes, d: &Diagnosis, p: &Pictured) {
     let fits = x - room > axes.frame.left;
     let (x, anchor) = match rises && fits {
         true => (x - 10.0, Anchor::End),
-        false => (x.min(WIDTH - room) + 10.0, Anchor::Start),
+        false => (x.min(canvas.width() - room) + 10.0, Anchor::Start),
     };
     let y = (y - 12.0).max(axes.frame.top + 12.0);
     canvas.text((x, y), anchor, MASS, &text);
