@@ -31,8 +31,8 @@ pub(super) struct Arguments {
     /// modes
     #[arg(long, value_parser = with_draws)]
     backend: Option<String>,
-    /// Look quickly, to be made sure of later: at some 64 values, with 500
-    /// draws of each chain where --draws says nothing else
+    /// Look quickly, to be made sure of later: at some 64 values, with
+    /// 2500 draws of each chain where --draws says nothing else
     #[arg(long)]
     quick: bool,
     /// Say what is known of the law's parameters when the rest of the physics

@@ -130,28 +130,27 @@ struct Work {
     /// Seed of every random draw
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Whether little has to do.
+    #[arg(skip)]
+    quick: bool,
 }
 
 /// How many draws of a chain, and steps before them, make a quick look.
-const QUICK: [usize; 2] = [500, 1_000];
+const QUICK: [usize; 2] = [2_500, 1_000];
 
 impl Work {
     /// The same, little where that has to do and nothing else was asked for.
     fn quickly(&self, quick: bool) -> Self {
-        let [draws, warmup] = QUICK;
-        match quick {
-            true => Self {
-                draws: self.draws.or(Some(draws)),
-                warmup: self.warmup.min(warmup),
-                ..self.clone()
-            },
-            false => self.clone(),
-        }
+        Self { quick, ..self.clone() }
     }
 
     fn effort(&self) -> Result<Effort> {
-        let (chains, warmup) = (self.chains, self.warmup);
-        let draws = self.draws.unwrap_or(Effort::new().draws);
+        let (chains, [few, little]) = (self.chains, QUICK);
+        let (draws, warmup) = match self.quick {
+            true => (few, self.warmup.min(little)),
+            false => (Effort::new().draws, self.warmup),
+        };
+        let draws = self.draws.unwrap_or(draws);
         if chains.saturating_mul(draws) > MOST_DRAWS {
             return Err(Error::input(format!(
                 "{chains} chains of {draws} draws are more than {MOST_DRAWS} \

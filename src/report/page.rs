@@ -24,15 +24,19 @@ const SCRIPT: &str = include_str!("page.js");
 /// ```
 pub fn page(report: &CalibrationReport) -> String {
     let title = format!("{}: calibration", plain(&report.event));
+    let (first, others): (Vec<Picture>, Vec<Picture>) =
+        pictures(report).into_iter().partition(|p| p.name == "recording");
     standalone(
         &title,
         &html! {
             (heading(report))
-            (words(report))
+            (answer(report))
+            @for picture in &first { (figure(picture)) }
+            (details(report))
             (table(&report.parameters))
             (noises(report))
             (law(report))
-            @for picture in pictures(report) { (figure(&picture)) }
+            @for picture in &others { (figure(picture)) }
             (computed(report))
         },
     )
@@ -70,10 +74,15 @@ fn heading(report: &CalibrationReport) -> Markup {
     }
 }
 
-fn words(report: &CalibrationReport) -> Markup {
+/// How many sentences come first: whether it fits, what was calibrated, and
+/// the law's parameters.
+const FIRST: usize = 3;
+
+fn answer(report: &CalibrationReport) -> Markup {
+    let words = sentences(report);
     html! {
-        ul.words {
-            @for sentence in sentences(report) { li { (unbroken(&sentence)) } }
+        @for sentence in words.iter().take(FIRST) {
+            p.lead { (unbroken(sentence)) }
         }
         @if !report.warnings.is_empty() {
             div.warning role="note" {
@@ -82,6 +91,21 @@ fn words(report: &CalibrationReport) -> Markup {
                     @for warning in &report.warnings {
                         li { (plain(warning)) }
                     }
+                }
+            }
+        }
+    }
+}
+
+/// All other sentences.
+fn details(report: &CalibrationReport) -> Markup {
+    let words = sentences(report);
+    html! {
+        @if words.len() > FIRST {
+            h2 { "In detail" }
+            ul.words {
+                @for sentence in words.iter().skip(FIRST) {
+                    li { (unbroken(sentence)) }
                 }
             }
         }

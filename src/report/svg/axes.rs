@@ -149,6 +149,8 @@ impl Axes {
         }
         let at = (0.5 * (left + right), bottom + 10.0 + 2.0 * FONT + 2.0);
         canvas.text(at, Anchor::Middle, INK, name);
+        // A legend may have taken more lines than there was room for.
+        canvas.reach(at.1 + 0.5 * FONT);
     }
 
     fn x_ticks(&self) -> Vec<(f64, String)> {

@@ -122,6 +122,11 @@ impl Canvas {
         self.width
     }
 
+    /// Makes sure that the canvas reaches down to y.
+    pub(crate) fn reach(&mut self, y: f64) {
+        self.height = self.height.max(y);
+    }
+
     /// From here on what is drawn is of a series, by its name in the legend,
     /// until another is named or a clip ends; a page lets the reader hide it
     /// and reads its values out.
