@@ -4,14 +4,16 @@ use nalgebra::DVector;
 
 use super::density::{Density, Weights};
 use super::information::Information;
+use super::label::Label;
 use super::listener::{Collector, Declaration, Listener};
 use super::posterior::Posterior;
 use super::program::{Model, Point};
 use crate::error::{Outcome, Result};
 use crate::noise::Noise;
 use crate::observe::Series;
-use crate::prior::Prior;
+use crate::prior::{Distribution, Prior};
 use crate::scalar::{Plain, Real};
+use crate::seed::Rng;
 
 /// A model at given values of some of its parameters, whose priors depend on
 /// none of the unknown ones: a model of those. Its density is
@@ -215,9 +217,21 @@ impl Listener<Plain> for Heard<'_> {
         &mut self,
         value: f64,
         log_density: Real<Plain>,
-        distribution: &dyn Prior<Plain>,
+        distribution: &dyn Distribution<Plain>,
     ) {
         self.listener.element(value, log_density, distribution);
+    }
+
+    fn increment(&mut self, log_density: Real<Plain>) {
+        self.listener.increment(log_density);
+    }
+
+    fn kept(&mut self, label: &Label<'_>, value: f64) {
+        self.listener.kept(label, value);
+    }
+
+    fn chance(&mut self) -> Option<&mut Rng> {
+        self.listener.chance()
     }
 }
 
