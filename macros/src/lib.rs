@@ -11,6 +11,7 @@ mod check;
 mod distribution;
 mod errors;
 mod expand;
+mod keep;
 mod label;
 mod parse;
 mod split;

@@ -84,7 +84,12 @@ impl<K: Forward> Listener<K> for Part<'_, K> {
         Ok(())
     }
 
-    fn element(&mut self, _: f64, log_density: Real<K>, _: &dyn Distribution<K>) {
+    fn element(
+        &mut self,
+        _: f64,
+        log_density: Real<K>,
+        _: &dyn Distribution<K>,
+    ) {
         self.columns.push(log_density);
     }
 

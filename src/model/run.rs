@@ -179,9 +179,7 @@ impl<'r, K: Kind> Run<'r, K> {
     }
 
     /// Who listens.
-    pub(super) fn listener(
-        &mut self,
-    ) -> Option<&mut (dyn Listener<K> + 'r)> {
+    pub(super) fn listener(&mut self) -> Option<&mut (dyn Listener<K> + 'r)> {
         self.listener.as_deref_mut()
     }
 
@@ -204,7 +202,9 @@ impl<'r, K: Kind> Run<'r, K> {
         }
         self.log_likelihood += log_density;
         match self.log_likelihood.value() == f64::NEG_INFINITY {
-            true => Err(Stop::Reject("the log density added is minus infinity")),
+            true => {
+                Err(Stop::Reject("the log density added is minus infinity"))
+            }
             false => Ok(()),
         }
     }

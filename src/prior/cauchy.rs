@@ -8,7 +8,10 @@ use std::f64::consts::PI;
 use rand_distr::Distribution as _;
 
 use super::special::ln_1p_squared;
-use super::{Cumulative, Distribution, Prior, Support, impossible, positive, quantile_of};
+use super::{
+    Cumulative, Distribution, Prior, Support, impossible, positive,
+    quantile_of,
+};
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 

@@ -3,7 +3,10 @@
 use rand_distr::{Distribution as _, Exp1};
 
 use super::cumulative::ln_1m_exp;
-use super::{Cumulative, Distribution, Prior, Support, impossible, positive, quantile_of};
+use super::{
+    Cumulative, Distribution, Prior, Support, impossible, positive,
+    quantile_of,
+};
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 

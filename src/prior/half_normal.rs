@@ -5,9 +5,12 @@ use std::f64::consts::{LN_2, SQRT_2};
 use rand_distr::{Distribution as _, StandardNormal};
 use statrs::function::erf::erf_inv;
 
-use super::special::ln_normal_below;
 use super::cumulative::ln_1m_exp;
-use super::{Cumulative, Distribution, LN_SQRT_2PI, Prior, Support, impossible, positive, quantile_of};
+use super::special::ln_normal_below;
+use super::{
+    Cumulative, Distribution, LN_SQRT_2PI, Prior, Support, impossible,
+    positive, quantile_of,
+};
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 

@@ -3,7 +3,10 @@
 use rand_distr::{Distribution as _, StandardNormal};
 
 use super::special::{LN_SQRT_2PI, ln_normal_below, normal_quantile};
-use super::{Cumulative, Distribution, Prior, Support, impossible, positive, quantile_of};
+use super::{
+    Cumulative, Distribution, Prior, Support, impossible, positive,
+    quantile_of,
+};
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 

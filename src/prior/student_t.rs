@@ -10,7 +10,10 @@
 use rand_distr::{Distribution as _, StandardNormal};
 
 use super::special::{ln_1p_squared, ln_gamma, normal_quantile};
-use super::{Distribution, LN_SQRT_2PI, Prior, Support, beta, gamma, impossible, positive, quantile_of};
+use super::{
+    Distribution, LN_SQRT_2PI, Prior, Support, beta, gamma, impossible,
+    positive, quantile_of,
+};
 use crate::scalar::{Kind, Real, polynomial};
 use crate::seed::Rng;
 

@@ -4,7 +4,9 @@ use rand_distr::{Distribution as _, Open01};
 
 use super::cumulative::ln_1m_exp;
 use super::special::root;
-use super::{Cumulative, Distribution, Prior, Support, impossible, quantile_of};
+use super::{
+    Cumulative, Distribution, Prior, Support, impossible, quantile_of,
+};
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 

@@ -2,7 +2,10 @@
 
 use rand_distr::{Distribution as _, Open01};
 
-use super::{Cumulative, Distribution, Prior, Support, impossible, positive, quantile_of};
+use super::{
+    Cumulative, Distribution, Prior, Support, impossible, positive,
+    quantile_of,
+};
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 

@@ -256,6 +256,13 @@ impl<K: Kind> From<f64> for Real<K> {
     }
 }
 
+impl<K: Kind> From<&Self> for Real<K> {
+    #[inline(always)]
+    fn from(value: &Self) -> Self {
+        *value
+    }
+}
+
 impl<K: Kind> Default for Real<K> {
     fn default() -> Self {
         Self::new(0.0)
