@@ -119,6 +119,7 @@ pub mod mechanism;
 pub mod model;
 pub mod noise;
 pub mod observe;
+pub mod ode;
 pub mod physics;
 pub mod predict;
 pub mod prelude;

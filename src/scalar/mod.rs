@@ -48,6 +48,19 @@ impl<K: Kind> Real<K> {
         Self(K::variable(value, direction))
     }
 
+    /// A number whose derivatives were found elsewhere: those along all
+    /// directions that the kind carries.
+    #[inline]
+    pub(crate) fn assembled(value: f64, partials: &[f64]) -> Self {
+        Self(K::assemble(value, partials))
+    }
+
+    /// The derivative along `direction`, of a kind that carries it.
+    #[inline(always)]
+    pub(crate) fn direction(self, direction: usize) -> f64 {
+        K::partial(&self.0, direction)
+    }
+
     /// The value, without derivatives.
     #[inline(always)]
     pub fn value(self) -> f64 {
