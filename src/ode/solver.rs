@@ -1,12 +1,12 @@
 //! From a state and its rates to the states at given times.
 
 use std::cell::Cell;
-use std::marker::PhantomData;
 
-use nalgebra::DVector;
+use nalgebra::allocator::Allocator;
+use nalgebra::{DVector, DefaultAllocator, Dim, OVector, SVector};
 use ode_solvers::{Dop853, OutputType, System};
 
-use super::state::{Spread, gathered, spread};
+use super::state::{Spread, gathered, write};
 use crate::error::{Error, Stop};
 use crate::scalar::{Kind, Real};
 
@@ -80,15 +80,69 @@ impl Solver {
         Ok(Self { relative, absolute })
     }
 
-    /// The steps from one time to another. The factors are those that
-    /// ode_solvers chooses by itself.
-    fn steps<F: System<f64, DVector<f64>>>(
+    /// As [`solve`].
+    ///
+    /// # Errors
+    /// As [`solve`].
+    pub fn solve<K: Kind, const N: usize>(
         &self,
-        right: F,
+        rate: impl Fn(f64, [Real<K>; N]) -> [Real<K>; N],
+        start: (f64, [Real<K>; N]),
+        times: &[f64],
+    ) -> Result<Vec<[Real<K>; N]>, Stop> {
+        match K::DIRECTIONS {
+            // Of so many numbers, known when compiled, none is on the heap.
+            0 => self.walk(rate, start, times, SVector::<f64, N>::zeros()),
+            n => {
+                let state = DVector::zeros(N * (1 + n));
+                self.walk(rate, start, times, state)
+            }
+        }
+    }
+
+    /// From time to time; the last argument is room for the state.
+    fn walk<K: Kind, D: Dim, const N: usize>(
+        &self,
+        rate: impl Fn(f64, [Real<K>; N]) -> [Real<K>; N],
+        (mut now, start): (f64, [Real<K>; N]),
+        times: &[f64],
+        mut state: OVector<f64, D>,
+    ) -> Result<Vec<[Real<K>; N]>, Stop>
+    where
+        DefaultAllocator: Allocator<D>,
+    {
+        write(&start, state.as_mut_slice());
+        let mut states = Vec::with_capacity(times.len());
+        for (i, &time) in times.iter().enumerate() {
+            if !(time >= now && time.is_finite()) {
+                return Err(out_of_order(i, time, now));
+            }
+            if time > now {
+                let failed = Cell::new(false);
+                let right = Spread::<_, K, N>::new(&rate, &failed);
+                state = self.step(right, (now, time), state)?;
+                if failed.get() || !state.iter().all(|x| x.is_finite()) {
+                    return Err(UNSOLVED);
+                }
+                now = time;
+            }
+            states.push(gathered(state.as_slice()));
+        }
+        Ok(states)
+    }
+
+    /// From one time to another. The factors are those that ode_solvers
+    /// chooses by itself.
+    fn step<D: Dim>(
+        &self,
+        right: impl System<f64, OVector<f64, D>>,
         (from, to): (f64, f64),
-        state: DVector<f64>,
-    ) -> Dop853<f64, DVector<f64>, F> {
-        Dop853::from_param(
+        state: OVector<f64, D>,
+    ) -> Result<OVector<f64, D>, Stop>
+    where
+        DefaultAllocator: Allocator<D>,
+    {
+        let mut steps = Dop853::from_param(
             right,
             from,
             to,
@@ -105,41 +159,9 @@ impl Solver {
             MOST_STEPS,
             1000,
             OutputType::Sparse,
-        )
-    }
-
-    /// As [`solve`].
-    ///
-    /// # Errors
-    /// As [`solve`].
-    pub fn solve<K: Kind, const N: usize>(
-        &self,
-        rate: impl Fn(f64, [Real<K>; N]) -> [Real<K>; N],
-        start: (f64, [Real<K>; N]),
-        times: &[f64],
-    ) -> Result<Vec<[Real<K>; N]>, Stop> {
-        let (mut now, mut state) = (start.0, spread(&start.1));
-        let mut states = Vec::with_capacity(times.len());
-        for (i, &time) in times.iter().enumerate() {
-            if !(time >= now && time.is_finite()) {
-                return Err(out_of_order(i, time, now));
-            }
-            if time > now {
-                let failed = Cell::new(false);
-                let (rate, kind) = (&rate, PhantomData::<K>);
-                let right = Spread::<_, K, N> { rate, failed: &failed, kind };
-                let mut steps = self.steps(right, (now, time), state);
-                let solved = steps.integrate();
-                state = steps.y_out().last().cloned().ok_or(UNSOLVED)?;
-                let finite = state.iter().all(|x| x.is_finite());
-                if solved.is_err() || failed.get() || !finite {
-                    return Err(UNSOLVED);
-                }
-                now = time;
-            }
-            states.push(gathered(state.as_slice()));
-        }
-        Ok(states)
+        );
+        steps.integrate().map_err(|_| UNSOLVED)?;
+        steps.y_out().last().cloned().ok_or(UNSOLVED)
     }
 }
 

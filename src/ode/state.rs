@@ -1,22 +1,20 @@
 //! A state and its derivatives as one vector of plain numbers, and back.
 
 use std::cell::Cell;
+use std::marker::PhantomData;
 
-use nalgebra::DVector;
+use nalgebra::allocator::Allocator;
+use nalgebra::{DefaultAllocator, Dim, OVector};
 use ode_solvers::System;
 
 use crate::scalar::{Kind, Real};
 
-/// First the values, then for each its derivatives along all directions.
-pub(super) fn spread<K: Kind, const N: usize>(
+/// Writes first the values, then for each its derivatives along all
+/// directions.
+pub(super) fn write<K: Kind, const N: usize>(
     state: &[Real<K>; N],
-) -> DVector<f64> {
-    let mut all = DVector::zeros(N * (1 + K::DIRECTIONS));
-    write(state, all.as_mut_slice());
-    all
-}
-
-fn write<K: Kind, const N: usize>(state: &[Real<K>; N], all: &mut [f64]) {
+    all: &mut [f64],
+) {
     for (i, x) in state.iter().enumerate() {
         all[i] = x.value();
         for j in 0..K::DIRECTIONS {
@@ -25,7 +23,7 @@ fn write<K: Kind, const N: usize>(state: &[Real<K>; N], all: &mut [f64]) {
     }
 }
 
-/// The state of such a vector.
+/// The state of such numbers.
 pub(super) fn gathered<K: Kind, const N: usize>(all: &[f64]) -> [Real<K>; N] {
     std::array::from_fn(|i| {
         let begin = N + i * K::DIRECTIONS;
@@ -36,17 +34,31 @@ pub(super) fn gathered<K: Kind, const N: usize>(all: &[f64]) -> [Real<K>; N] {
 /// The right side as the solver asks for it, with a note of a rate that was
 /// not finite: the solver itself would step on for long.
 pub(super) struct Spread<'f, F, K, const N: usize> {
-    pub(super) rate: &'f F,
-    pub(super) failed: &'f Cell<bool>,
-    pub(super) kind: std::marker::PhantomData<K>,
+    rate: &'f F,
+    failed: &'f Cell<bool>,
+    kind: PhantomData<K>,
 }
 
-impl<F, K, const N: usize> System<f64, DVector<f64>> for Spread<'_, F, K, N>
+impl<'f, F, K, const N: usize> Spread<'f, F, K, N> {
+    pub(super) fn new(rate: &'f F, failed: &'f Cell<bool>) -> Self {
+        Self { rate, failed, kind: PhantomData }
+    }
+}
+
+impl<F, K, D, const N: usize> System<f64, OVector<f64, D>>
+    for Spread<'_, F, K, N>
 where
     K: Kind,
+    D: Dim,
+    DefaultAllocator: Allocator<D>,
     F: Fn(f64, [Real<K>; N]) -> [Real<K>; N],
 {
-    fn system(&self, time: f64, all: &DVector<f64>, rates: &mut DVector<f64>) {
+    fn system(
+        &self,
+        time: f64,
+        all: &OVector<f64, D>,
+        rates: &mut OVector<f64, D>,
+    ) {
         // What keeps a record of how it was formed has no part in the steps.
         let state = match K::DIRECTIONS {
             0 => std::array::from_fn(|i| Real::new(all[i])),
@@ -59,7 +71,12 @@ where
         }
     }
 
-    fn solout(&mut self, _: f64, _: &DVector<f64>, _: &DVector<f64>) -> bool {
+    fn solout(
+        &mut self,
+        _: f64,
+        _: &OVector<f64, D>,
+        _: &OVector<f64, D>,
+    ) -> bool {
         self.failed.get()
     }
 }

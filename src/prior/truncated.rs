@@ -153,3 +153,109 @@ impl<K: Kind, D: Cumulative<K>> Prior<K> for Truncated<K, D> {
         quantile_of(&self.support(), p, |p| self.solve(p))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::prior::{Cauchy, Exponential, HalfCauchy, HalfNormal};
+    use crate::prior::{LogNormal, Normal, Uniform};
+    use crate::scalar::{Grad, Plain};
+    use crate::seed::Seed;
+
+    /// Probabilities below and above each quantile, far into both tails.
+    fn check<D: Cumulative<Plain>>(of: &D) {
+        for p in [1e-12, 1e-4, 0.3, 0.5, 0.9, 0.9999] {
+            let x = Real::new(of.quantile(p).unwrap());
+            let (below, above) = (of.log_below(x), of.log_above(x));
+            // Of the quantile's round-off, seen through the density, and of
+            // 1 - p as a number.
+            let slope = (of.log_density(x).value() - p.ln()).exp();
+            let error = 1e-10 + 1e-14 * slope * x.value().abs();
+            assert!((below.value() - p.ln()).abs() < error, "{p}");
+            let slope = (of.log_density(x) - above).value().exp();
+            let error = 1e-11 + 1e-14 * slope * x.value().abs();
+            assert!((above.value() - (-p).ln_1p()).abs() < error, "{p}");
+        }
+    }
+
+    #[test]
+    fn probabilities_are_those_of_quantiles() {
+        check(&Normal::new(1.0, 2.0));
+        check(&LogNormal::new(-1.0, 0.5));
+        check(&Exponential::new(3.0));
+        check(&Uniform::new(-1.0, 4.0));
+        check(&HalfNormal::new(2.0));
+        check(&Cauchy::new(1.0, 2.0));
+        check(&HalfCauchy::new(2.0));
+    }
+
+    #[test]
+    fn what_is_left_integrates_to_one() {
+        let normal = || Normal::<Plain>::new(0.0, 1.0);
+        for (low, high) in [(-0.5, 2.0), (8.0, 9.0), (-21.0, -20.5)] {
+            let cut = Truncated::new(normal(), low, high);
+            let n = 20_000;
+            let h = (high - low) / f64::from(n);
+            let at = |i| Real::new(low + h * (f64::from(i) + 0.5));
+            let sum: f64 =
+                (0..n).map(|i| cut.log_density(at(i)).value().exp()).sum();
+            // Midpoints: h^2/24 times the change of slope, below 1e-7 here.
+            assert!((sum * h - 1.0).abs() < 1e-6, "{low} {}", sum * h);
+        }
+    }
+
+    #[test]
+    fn quantiles_and_draws_lie_inside() {
+        let infinite = f64::INFINITY;
+        let ends =
+            [(-1.0, 0.5), (30.0, infinite), (-infinite, -9.0), (1.0, 1.5)];
+        for (low, high) in ends {
+            let cut =
+                Truncated::new(Normal::<Plain>::new(0.0, 1.0), low, high);
+            let of = |p| cut.quantile(p).unwrap();
+            let part = |x| cut.log_between(Real::new(low), Real::new(x));
+            for p in [1e-6, 0.2, 0.5, 0.8] {
+                let share = (part(of(p)) - cut.log_mass()).value().exp();
+                assert!((share / p - 1.0).abs() < 1e-8, "{low} {p} {share}");
+            }
+            let x = cut.draw(&mut Seed::new(1).rng()).unwrap();
+            assert!(x > low && x < high && cut.support().contains(x));
+        }
+    }
+
+    #[test]
+    fn derivatives_are_those_of_differences() {
+        let log = |v: [f64; 4]| {
+            let x: Vec<_> =
+                (0..4).map(|i| Real::<Grad<4>>::variable(v[i], i)).collect();
+            let normal = Normal::new(x[0], x[1]);
+            Truncated::new(normal, x[2], f64::INFINITY).log_density(x[3])
+        };
+        let at = [0.3, 1.2, -0.4, 0.9];
+        for i in 0..4 {
+            let moved = |h: f64| {
+                let mut v = at;
+                v[i] += h;
+                log(v).value()
+            };
+            let known = (moved(1e-5) - moved(-1e-5)) / 2e-5;
+            // A central difference: 1e-10 of curvature, 1e-11 of round-off.
+            assert!((log(at).partial(i) - known).abs() < 1e-8, "{i}");
+        }
+    }
+
+    #[test]
+    fn impossible_ends_have_no_density() {
+        let cut = |low, high| {
+            Truncated::new(Normal::<Plain>::new(0.0, 1.0), low, high)
+        };
+        for empty in [cut(1.0, 1.0), cut(2.0, 1.0), cut(f64::NAN, 1.0)] {
+            let log = empty.log_density(Real::new(1.0)).value();
+            assert_eq!(log, f64::NEG_INFINITY);
+            assert!(empty.quantile(0.5).is_none());
+        }
+        let own = Truncated::new(Uniform::<Plain>::new(0.0, 1.0), -1.0, 9.0);
+        assert_eq!(own.support().ends(), (0.0, 1.0));
+        assert_eq!(own.log_density(Real::new(0.5)).value(), 0.0);
+    }
+}
