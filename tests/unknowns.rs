@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use couloir::infer::{LaplaceMixture, Quadrature, kept};
+use couloir::infer::{LaplaceMixture, kept};
 use couloir::model::Weights;
 use couloir::ode;
 use couloir::prelude::*;
@@ -19,12 +19,16 @@ fn below(x: f64) -> f64 {
     0.5 * statrs::function::erf::erfc(-x / 2.0_f64.sqrt())
 }
 
-/// ln evidence without Monte Carlo error.
-fn log_evidence(model: &dyn Model) -> f64 {
+/// Compares ln evidence with what it is known to be: five standard errors.
+#[track_caller]
+fn check_evidence(model: &dyn Model, known: f64) {
     let posterior = Posterior::new(model).unwrap();
-    let backend = Quadrature::default();
+    let backend = ImportanceSampling::default();
     let found = infer(&backend, &posterior, Seed::new(1), &Quiet).unwrap();
-    found.evidence.unwrap().log
+    let found = found.evidence.unwrap();
+    assert!(found.se < 0.02, "{}", found.se);
+    let off = (found.log - known).abs();
+    assert!(off < 5.0 * found.se, "{} {known}", found.log);
 }
 
 model! {
@@ -50,9 +54,7 @@ fn shares_have_the_evidence_of_polya() {
         .fold(ln_gamma(6.5) - ln_gamma(16.5), |sum, (a, n)| {
             sum + ln_gamma(a + f64::from(n)) - ln_gamma(*a)
         });
-    let found = log_evidence(&Votes::new(votes));
-    // The quadrature's own goal.
-    assert!((found - known).abs() < 1e-6, "{found} {known}");
+    check_evidence(&Votes::new(votes), known);
 }
 
 model! {
@@ -72,8 +74,7 @@ fn ordered_numbers_have_the_evidence_of_both_orders() {
     let each = |y| ln_normal(y, 0.0, 2.0_f64.sqrt());
     let order = 2.0 * below(0.5 * (y[1] - y[0]));
     let known = each(y[0]) + each(y[1]) + order.ln();
-    let found = log_evidence(&Two::new(y));
-    assert!((found - known).abs() < 1e-6, "{found} {known}");
+    check_evidence(&Two::new(y), known);
 }
 
 model! {
@@ -88,8 +89,7 @@ fn a_truncated_prior_has_the_evidence_of_its_half() {
     for y in [-1.0, 0.4] {
         let known = ln_normal(y, 0.0, 2.0_f64.sqrt())
             + (2.0 * below(y / 2.0_f64.sqrt())).ln();
-        let found = log_evidence(&Cut::new(y));
-        assert!((found - known).abs() < 1e-6, "{found} {known}");
+        check_evidence(&Cut::new(y), known);
     }
 }
 
@@ -243,9 +243,10 @@ fn a_solved_system_has_the_gradient_of_its_formula() {
         let mut gradient = vec![0.0; z.len()];
         let weights = Weights { prior: 0.0, jacobian: 0.0, likelihood: 1.0 };
         let found = posterior.gradient(&z, weights, &mut gradient).unwrap();
-        // The solver's errors of 1e-8, through errors of 0.1.
-        let known = exact(a, b, start);
-        assert!((found.log_likelihood - known).abs() < 1e-5);
+        // The solver's errors, some 1e-8 from step to step, times residuals
+        // over variances of 1e-2.
+        let off = (found.log_likelihood - exact(a, b, start)).abs();
+        assert!(off < 1e-4, "{off}");
         let h = 1e-5;
         let by = |f: &dyn Fn(f64) -> f64| (f(h) - f(-h)) / (2.0 * h);
         let known = [
@@ -254,7 +255,8 @@ fn a_solved_system_has_the_gradient_of_its_formula() {
             by(&|h| exact(a, b, start + h)),
         ];
         for (found, known) in gradient.iter().zip(known) {
-            assert!((found - known).abs() < 1e-4, "{found} {known}");
+            let off = (found - known).abs();
+            assert!(off < 1e-3, "{off} {found} {known}");
         }
         assert!(gradient[3..].iter().all(|slope| *slope == 0.0));
     }

@@ -6,7 +6,7 @@
 //! (df/dy) dy/dp + df/dp, the sensitivity equations (Hairer, Norsett and
 //! Wanner 1993, section I.14). Their right side is exact, as f is written
 //! over numbers with derivatives. The steps are those of ode_solvers'
-//! Dop853, short enough for the state and its derivatives alike.
+//! Dopri5, short enough for the state and its derivatives alike.
 //!
 //! ```
 //! use couloir::prelude::*;

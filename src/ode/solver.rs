@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use nalgebra::allocator::Allocator;
 use nalgebra::{DVector, DefaultAllocator, Dim, OVector, SVector};
-use ode_solvers::{Dop853, OutputType, System};
+use ode_solvers::{Dopri5, OutputType, System};
 
 use super::state::{Spread, gathered, write};
 use crate::error::{Error, Stop};
@@ -132,7 +132,9 @@ impl Solver {
     }
 
     /// From one time to another. The factors are those that ode_solvers
-    /// chooses by itself.
+    /// chooses by itself. Its Dop853, which would take fewer steps, has two
+    /// stages at the beginning of a step that belong to its end (0.6.2), which
+    /// spoils rates that depend on time.
     fn step<D: Dim>(
         &self,
         right: impl System<f64, OVector<f64, D>>,
@@ -142,7 +144,7 @@ impl Solver {
     where
         DefaultAllocator: Allocator<D>,
     {
-        let mut steps = Dop853::from_param(
+        let mut steps = Dopri5::from_param(
             right,
             from,
             to,
@@ -151,9 +153,9 @@ impl Solver {
             self.relative,
             self.absolute,
             0.9,
-            0.0,
-            0.333,
-            6.0,
+            0.04,
+            0.2,
+            10.0,
             to - from,
             0.0,
             MOST_STEPS,
