@@ -508,7 +508,7 @@ fn distributions_made_of_others() {
     expect_line(&of("Truncated(y, 0.0, 1.0)"), &[("y", wanted)]);
     expect_line(
         &of("Truncated(Normal(0.0, 1.0), 2.0, 1.0)"),
-        &[("Normal", "low has to be below high")],
+        &[("Normal(0.0, 1.0), 2.0, 1.0", "low has to be below high")],
     );
     expect_line(
         &of("Truncated(Normal(0, 1.0), 0.0, 1)"),

@@ -266,7 +266,8 @@ mod tests {
         let all = whole.information(&line).unwrap();
         let found = own.information(&z).unwrap();
         let known = AnyPrior::Normal(0.0, 1.0);
-        let known = Prior::<Plain>::log_density(&known, Real::new(line[0]));
+        let known =
+            Distribution::<Plain>::log_density(&known, Real::new(line[0]));
         let off = all.density.log_prior - found.density.log_prior;
         assert!((off - known.value()).abs() < 1e-12);
         assert_eq!(found.density.log_jacobian, all.density.log_jacobian);
