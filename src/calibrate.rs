@@ -13,7 +13,7 @@ use crate::model::{Assembled, Point, Posterior};
 use crate::observe::Series;
 use crate::physics::State;
 use crate::predict::{Bands, posterior_predictive, prior_predictive};
-use crate::prior::{AnyPrior, Prior};
+use crate::prior::{AnyPrior, Distribution};
 use crate::report::text::is_synthetic;
 use crate::report::{
     CalibrationReport, Checks, EvidenceReport, ParameterReport, TrackReport,

@@ -40,7 +40,7 @@
 //! Another law is another word in that line (`Coulomb { mu: .. }`), or a sum
 //! (`Coulomb { .. } + Turbulent { .. }`); correlated errors are
 //! `Ar { phi: [Uniform(-1.0, 1.0)], sigma2: .. }`. The whole grammar is told
-//! at [`model!`], and `examples/` walks through it in twelve steps.
+//! at [`model!`], and `examples/` walks through it step by step.
 //!
 //! # The nouns
 //!
@@ -119,6 +119,7 @@ pub mod mechanism;
 pub mod model;
 pub mod noise;
 pub mod observe;
+pub mod ode;
 pub mod physics;
 pub mod predict;
 pub mod prelude;

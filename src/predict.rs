@@ -8,7 +8,7 @@ use crate::error::{Error, Outcome, Result};
 use crate::model::{Listener, Model, Point, Posterior, Replicates};
 use crate::noise::Noise;
 use crate::observe::Series;
-use crate::prior::Prior;
+use crate::prior::Distribution;
 use crate::scalar::{Plain, Real};
 use crate::seed::{Rng, Seed};
 
@@ -148,7 +148,7 @@ impl Listener<Plain> for Predicted<'_> {
         &mut self,
         value: f64,
         log_density: Real<Plain>,
-        distribution: &dyn Prior<Plain>,
+        distribution: &dyn Distribution<Plain>,
     ) {
         self.replicates.element(value, log_density, distribution);
     }
@@ -318,7 +318,7 @@ impl Listener<Plain> for Made<'_> {
         &mut self,
         value: f64,
         log_density: Real<Plain>,
-        distribution: &dyn Prior<Plain>,
+        distribution: &dyn Distribution<Plain>,
     ) {
         let mut one = Replicates::new(self.rng);
         one.element(value, log_density, distribution);

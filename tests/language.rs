@@ -9,7 +9,9 @@ use couloir::noise::{Ar, Iid};
 use couloir::physics::friction::{Cohesion, Coulomb, Turbulent, Voellmy};
 use couloir::physics::friction::{Friction, Rate, Site, Varies};
 use couloir::physics::{Sum, Track};
-use couloir::prior::{Gamma, InverseGamma, Normal, Prior, Support, Uniform};
+use couloir::prior::{
+    Distribution, Gamma, InverseGamma, Normal, Prior, Support, Uniform,
+};
 use couloir::scalar::Kind;
 use couloir::seed::Rng;
 use couloir::{
@@ -276,11 +278,17 @@ impl<K: Kind> Shifted<K> {
     }
 }
 
-impl<K: Kind> Prior<K> for Shifted<K> {
+impl<K: Kind> Distribution<K> for Shifted<K> {
     fn log_density(&self, x: Real<K>) -> Real<K> {
         self.low - x
     }
 
+    fn draw(&self, _: &mut Rng) -> Option<f64> {
+        Prior::<K>::quantile(self, 0.5)
+    }
+}
+
+impl<K: Kind> Prior<K> for Shifted<K> {
     fn support(&self) -> Support<K> {
         Support::Above(self.low)
     }
@@ -291,10 +299,6 @@ impl<K: Kind> Prior<K> for Shifted<K> {
 
     fn quantile(&self, p: f64) -> Option<f64> {
         Some(self.low.value() - (-p).ln_1p())
-    }
-
-    fn draw(&self, _: &mut Rng) -> Option<f64> {
-        self.quantile(0.5)
     }
 }
 
@@ -416,11 +420,18 @@ impl Peaked {
     }
 }
 
-impl<K: Kind> Prior<K> for Peaked {
+impl<K: Kind> Distribution<K> for Peaked {
     fn log_density(&self, x: Real<K>) -> Real<K> {
         (1.0 - x.abs()).ln()
     }
 
+    fn draw(&self, rng: &mut Rng) -> Option<f64> {
+        let half = Uniform::<couloir::scalar::Plain>::new(-0.5, 0.5);
+        Some(half.draw(rng)? + half.draw(rng)?)
+    }
+}
+
+impl<K: Kind> Prior<K> for Peaked {
     fn support(&self) -> Support<K> {
         Support::Between(Real::new(-1.0), Real::new(1.0))
     }
@@ -431,11 +442,6 @@ impl<K: Kind> Prior<K> for Peaked {
 
     fn quantile(&self, _: f64) -> Option<f64> {
         None
-    }
-
-    fn draw(&self, rng: &mut Rng) -> Option<f64> {
-        let half = Uniform::<couloir::scalar::Plain>::new(-0.5, 0.5);
-        Some(half.draw(rng)? + half.draw(rng)?)
     }
 }
 

@@ -10,6 +10,7 @@ use syn::{BinOp, Expr};
 
 use crate::distribution;
 use crate::errors::Errors;
+use crate::keep;
 use crate::tokens::{braces, contains, find, is_mark, is_word, split, stream};
 use crate::tree::{Distribution, Observation, Piece, Sampling};
 
@@ -35,6 +36,12 @@ struct Walk<'a> {
 impl Walk<'_> {
     /// A statement, behind blocks that need no `;` of their own.
     fn statement(&mut self, trees: &[TokenTree], ended: bool) {
+        if let Some(start) = keep::start(trees) {
+            return self.own(trees, start, ended, Self::keep);
+        }
+        if let Some(start) = increment(trees) {
+            return self.own(trees, start, ended, Self::increment);
+        }
         let Some(tilde) = find(trees, '~') else {
             return self.ordinary(trees);
         };
@@ -52,6 +59,37 @@ impl Walk<'_> {
         if let Some(comma) = trees.get(end) {
             self.pieces.push(Piece::Token(comma.clone()));
             self.statement(&trees[end + 1..], ended);
+        }
+    }
+
+    /// A statement of the language's own, from `start` on.
+    fn own(
+        &mut self,
+        trees: &[TokenTree],
+        start: usize,
+        ended: bool,
+        read: fn(&mut Self, &[TokenTree]),
+    ) {
+        self.ordinary(&trees[..start]);
+        read(self, &trees[start..]);
+        if let (false, Some(last)) = (ended, trees.last()) {
+            let words = "a `;` is missing behind this";
+            self.errors.at_span(last_span(last), words);
+        }
+    }
+
+    fn keep(&mut self, trees: &[TokenTree]) {
+        let read = keep::read(trees, self.errors);
+        self.pieces.extend(read.map(|keep| Piece::Keep(Box::new(keep))));
+    }
+
+    /// `log_density += value`
+    fn increment(&mut self, trees: &[TokenTree]) {
+        let read = whole("a `;` is missing before this");
+        let value = self.errors.keep(read.parse2(stream(&trees[3..])));
+        if let (TokenTree::Ident(word), Some(value)) = (&trees[0], value) {
+            let value = Box::new(value);
+            self.pieces.push(Piece::Increment(word.clone(), value));
         }
     }
 
@@ -164,6 +202,17 @@ fn whole(
             false => Err(input.error(words)),
         }
     }
+}
+
+/// Where a `log_density += ..` starts in a statement.
+fn increment(trees: &[TokenTree]) -> Option<usize> {
+    (0..trees.len()).find(|&i| {
+        let first = i == 0 || braces(&trees[i - 1]).is_some();
+        first
+            && is_word(&trees[i], "log_density")
+            && trees.get(i + 1).is_some_and(|tree| is_mark(tree, '+'))
+            && trees.get(i + 2).is_some_and(|tree| is_mark(tree, '='))
+    })
 }
 
 /// Where the statement with the `~` starts: behind a block or a `=>`.

@@ -6,10 +6,10 @@ use proc_macro2::{Ident, TokenTree};
 use syn::{Expr, Fields, ItemStruct};
 
 use crate::body::assignments;
-use crate::distribution::{BuiltIn, check_number, is_built_in};
+use crate::distribution::{BuiltIn, Place, check_number, is_built_in};
 use crate::errors::Errors;
 use crate::tokens::{shown, split, stream, uses};
-use crate::tree::{Body, Count, Declaration, Line};
+use crate::tree::{Body, Count, Declaration, Keep, Kept, Line};
 use crate::tree::{Right, Sampling, Source, Term, Value};
 
 /// Reports everything that is wrong with `source`.
@@ -24,11 +24,15 @@ pub(crate) fn source(source: &Source, errors: &mut Errors) {
         match line {
             Line::Declaration(declaration) => {
                 length(declaration, errors);
-                right(&declaration.right, errors);
+                given(declaration, errors);
+                let several = matches!(declaration.count, Count::Vector(_));
+                right(&declaration.right, several, errors);
             }
             Line::Broken(broken) => {
-                broken.parts.iter().for_each(|part| right(part, errors));
+                let each = broken.parts.iter();
+                each.for_each(|part| right(part, true, errors));
             }
+            Line::Keep(keep) => drawn(keep, errors),
             Line::Let(_) => {}
         }
     }
@@ -39,6 +43,9 @@ pub(crate) fn source(source: &Source, errors: &mut Errors) {
                 recorded(source, data, errors);
             }
             sampled(source, law, errors);
+        }
+        for one in body.drawn() {
+            one.check(Place::Data, errors);
         }
         assigned(source, body, errors);
     }
@@ -88,6 +95,7 @@ fn fields(source: &Source) -> Vec<&Ident> {
 fn bound(line: &Line) -> Vec<&Ident> {
     match line {
         Line::Let(local) => local.names.iter().collect(),
+        Line::Keep(keep) => keep.bound().into_iter().collect(),
         line => line.declared().into_iter().collect(),
     }
 }
@@ -128,6 +136,9 @@ fn order(source: &Source, errors: &mut Errors) {
                 continue;
             }
             if line.declared() == Some(&name) {
+                if is_one_after_another(line) {
+                    continue;
+                }
                 let words = format!("`{name}` is used in its own line");
                 errors.at(&name, words);
             } else if below.iter().skip(1).any(is) {
@@ -141,13 +152,30 @@ fn order(source: &Source, errors: &mut Errors) {
     }
 }
 
+/// Whether each of a line's unknowns may depend on those before it.
+fn is_one_after_another(line: &Line) -> bool {
+    matches!(line, Line::Declaration(declaration)
+        if matches!(declaration.count, Count::Each { .. })
+            && declaration.terms().is_empty())
+}
+
 /// The names that a line uses.
 fn mentioned(line: &Line) -> Vec<Ident> {
     match line {
         Line::Let(local) => uses(&local.value),
+        Line::Keep(keep) => mentioned_kept(keep),
         Line::Broken(broken) => uses(&broken.tokens),
         Line::Declaration(declaration) => mentioned_by(declaration),
     }
+}
+
+fn mentioned_kept(keep: &Keep) -> Vec<Ident> {
+    let mut found = match &keep.right {
+        Kept::Value(value) => uses(value),
+        Kept::Drawn(distribution) => uses(&distribution.arguments),
+    };
+    found.extend(keep.index.iter().flat_map(uses));
+    found
 }
 
 fn mentioned_by(declaration: &Declaration) -> Vec<Ident> {
@@ -158,6 +186,7 @@ fn mentioned_by(declaration: &Declaration) -> Vec<Ident> {
             fields.flat_map(|field| mentioned_in(&field.value)).collect()
         }
     };
+    found.extend(declaration.given.iter().flat_map(uses));
     match &declaration.count {
         Count::One => {}
         Count::Vector(length) => found.extend(uses(length)),
@@ -217,9 +246,39 @@ fn length(declaration: &Declaration, errors: &mut Errors) {
     }
 }
 
-fn right(right: &Right, errors: &mut Errors) {
+/// A datum is given to one unknown, of a distribution.
+fn given(declaration: &Declaration, errors: &mut Errors) {
+    let Some(given) = &declaration.given else { return };
+    let name = &declaration.name;
+    match (&declaration.right, &declaration.count) {
+        (Right::Distribution(_), Count::One | Count::Each { .. }) => {}
+        (Right::Distribution(_), Count::Vector(length)) => {
+            let words = format!(
+                "data are given one by one: write `{name}[i in 0..{}] ~ .. \
+                 given {}[i]`",
+                shown(length),
+                shown(given)
+            );
+            errors.at(given, words);
+        }
+        (Right::Blocks(_), _) => {
+            let words = "a block is not observed: `given` stands behind a \
+                         distribution";
+            errors.at(given, words);
+        }
+    }
+}
+
+fn drawn(keep: &Keep, errors: &mut Errors) {
+    if let Kept::Drawn(distribution) = &keep.right {
+        distribution.check(Place::Data, errors);
+    }
+}
+
+fn right(right: &Right, several: bool, errors: &mut Errors) {
+    let place = if several { Place::Several } else { Place::One };
     match right {
-        Right::Distribution(distribution) => distribution.check(errors),
+        Right::Distribution(distribution) => distribution.check(place, errors),
         Right::Blocks(terms) => {
             terms.iter().for_each(|block| term(block, errors));
         }
@@ -245,7 +304,8 @@ fn term(term: &Term, errors: &mut Errors) {
 }
 
 fn value(name: &Ident, value: &Value, errors: &mut Errors) {
-    value.priors().iter().for_each(|prior| prior.check(errors));
+    let priors = value.priors().iter();
+    priors.for_each(|prior| prior.check(Place::One, errors));
     let empty = match value {
         Value::Priors(priors) => priors.is_empty(),
         Value::Known(Expr::Array(list)) => {
@@ -330,7 +390,9 @@ fn recorded(source: &Source, data: &Expr, errors: &mut Errors) {
 
 fn sampled(source: &Source, law: &Sampling, errors: &mut Errors) {
     match law {
-        Sampling::Distribution(distribution) => distribution.check(errors),
+        Sampling::Distribution(distribution) => {
+            distribution.check(Place::Data, errors);
+        }
         Sampling::Noise { prediction, noise } => {
             summands(source, prediction, noise, errors);
         }
@@ -427,6 +489,7 @@ fn has_blocks(source: &Source, name: &Ident) -> bool {
 impl Body {
     /// Whether it has a `~` line, even one that was not understood.
     fn has_lines(&self) -> bool {
-        crate::tokens::contains(self.tokens.clone(), '~').is_some()
+        self.adds()
+            || crate::tokens::contains(self.tokens.clone(), '~').is_some()
     }
 }

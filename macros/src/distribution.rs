@@ -14,28 +14,91 @@ use crate::tree::Distribution;
 pub(crate) struct BuiltIn {
     pub(crate) name: &'static str,
     pub(crate) arguments: &'static [Argument],
+    pub(crate) of: Of,
+}
+
+/// What a distribution is of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Of {
+    /// A real number: an unknown, or a datum.
+    Real,
+    /// A whole number, which no unknown is.
+    Whole,
+    /// Several numbers that depend on each other.
+    Several,
+}
+
+/// Where a distribution stands.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Place {
+    /// Right of one unknown.
+    One,
+    /// Right of `name[n]`.
+    Several,
+    /// Right of data.
+    Data,
+    /// Within the distribution of an unknown.
+    Part,
 }
 
 /// One of its arguments.
 pub(crate) struct Argument {
     pub(crate) name: &'static str,
-    /// Whether it has to be above 0.
-    pub(crate) positive: bool,
+    pub(crate) need: Need,
+}
+
+/// What an argument has to be.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Need {
+    Real,
+    /// A number above 0.
+    Positive,
+    /// A list of numbers.
+    Numbers,
+    Distribution,
+    /// A list of distributions.
+    Distributions,
 }
 
 const fn real(name: &'static str) -> Argument {
-    Argument { name, positive: false }
+    Argument { name, need: Need::Real }
 }
 
 const fn positive(name: &'static str) -> Argument {
-    Argument { name, positive: true }
+    Argument { name, need: Need::Positive }
+}
+
+const fn numbers(name: &'static str) -> Argument {
+    Argument { name, need: Need::Numbers }
+}
+
+const fn distribution(name: &'static str) -> Argument {
+    Argument { name, need: Need::Distribution }
+}
+
+const fn distributions(name: &'static str) -> Argument {
+    Argument { name, need: Need::Distributions }
 }
 
 const fn built_in(
     name: &'static str,
     arguments: &'static [Argument],
 ) -> BuiltIn {
-    BuiltIn { name, arguments }
+    BuiltIn { name, arguments, of: Of::Real }
+}
+
+const fn of_whole(
+    name: &'static str,
+    arguments: &'static [Argument],
+) -> BuiltIn {
+    BuiltIn { name, arguments, of: Of::Whole }
+}
+
+const fn of_several(
+    name: &'static str,
+    arguments: &'static [Argument],
+) -> BuiltIn {
+    BuiltIn { name, arguments, of: Of::Several }
 }
 
 /// All of them.
@@ -55,12 +118,49 @@ pub(crate) const BUILT_IN: &[BuiltIn] = &[
         &[positive("freedom"), real("location"), positive("scale")],
     ),
     built_in("Flat", &[]),
+    built_in("Truncated", &[distribution("D"), real("low"), real("high")]),
+    built_in("Mixture", &[numbers("weights"), distributions("[D, ..]")]),
+    of_whole("Poisson", &[positive("mean")]),
+    of_whole("Binomial", &[real("trials"), real("p")]),
+    of_whole("Bernoulli", &[real("p")]),
+    of_several("Ordered", &[distribution("D")]),
+    of_several("Dirichlet", &[numbers("weights")]),
 ];
 
 impl BuiltIn {
     /// The one of that name.
     pub(crate) fn named(name: &Ident) -> Option<&'static Self> {
         BUILT_IN.iter().find(|known| name == known.name)
+    }
+
+    /// Why it cannot stand there.
+    fn misplaced(&self, place: Place) -> Option<String> {
+        let name = self.name;
+        match (self.of, place) {
+            (Of::Whole, Place::One | Place::Several | Place::Part) => {
+                Some(format!(
+                    "`{name}` is of whole numbers, and an unknown is a real \
+                     number: in the likelihood, data may come from it"
+                ))
+            }
+            (Of::Several, Place::One) => Some(format!(
+                "`{name}` is of several numbers: write `name[n] ~ {}`",
+                self.written()
+            )),
+            (Of::Several, Place::Data | Place::Part) => Some(format!(
+                "`{name}` is of several unknowns: it stands alone, right of \
+                 `name[n] ~`"
+            )),
+            _ => None,
+        }
+    }
+
+    /// Whether an argument is made of other distributions.
+    pub(crate) fn has_parts(&self) -> bool {
+        let is_part = |one: &Argument| {
+            matches!(one.need, Need::Distribution | Need::Distributions)
+        };
+        self.arguments.iter().any(is_part)
     }
 
     /// How it is written: `Normal(mean, sd)`.
@@ -80,13 +180,16 @@ impl Distribution {
     /// Reports a name that is none and arguments that cannot be.
     ///
     /// Only a single name is looked up: `path::to::Own(..)` is the user's.
-    pub(crate) fn check(&self, errors: &mut Errors) {
+    pub(crate) fn check(&self, place: Place, errors: &mut Errors) {
         let Some(name) = self.path.get_ident() else { return };
         let Some(known) = BuiltIn::named(name) else {
             return errors.at(name, unknown(name));
         };
+        if let Some(words) = known.misplaced(place) {
+            errors.at(name, words);
+        }
         if self.arguments.len() == known.arguments.len() {
-            self.check_values(known, errors);
+            self.check_values(known, place, errors);
         } else {
             let (given, wanted) =
                 (self.arguments.len(), known.arguments.len());
@@ -100,9 +203,18 @@ impl Distribution {
         }
     }
 
-    fn check_values(&self, known: &BuiltIn, errors: &mut Errors) {
+    fn check_values(
+        &self,
+        known: &BuiltIn,
+        place: Place,
+        errors: &mut Errors,
+    ) {
         for (given, argument) in self.arguments.iter().zip(known.arguments) {
-            if argument.positive && value(given).is_some_and(|x| x <= 0.0) {
+            let above = argument.need == Need::Positive;
+            if check_parts(given, argument.need, place, errors) {
+                continue;
+            }
+            if above && value(given).is_some_and(|x| x <= 0.0) {
                 let words = format!(
                     "the {} of `{}` has to be above 0",
                     argument.name,
@@ -114,14 +226,63 @@ impl Distribution {
             }
         }
         let values: Vec<_> = self.arguments.iter().map(value).collect();
-        if let ("Uniform", [Some(low), Some(high)]) = (known.name, &*values)
+        if let ("Uniform", [Some(low), Some(high)])
+        | ("Truncated", [_, Some(low), Some(high)]) = (known.name, &*values)
             && low >= high
         {
             let words = format!(
-                "an empty range: in `Uniform(low, high)` low has to be below \
-                 high, but {low:?} is not below {high:?}"
+                "an empty range: in `{}` low has to be below high, but \
+                 {low:?} is not below {high:?}",
+                known.written()
             );
             errors.at(&self.arguments, words);
+        }
+    }
+}
+
+/// Checks an argument that is made of others; whether it is one.
+fn check_parts(
+    given: &Expr,
+    need: Need,
+    place: Place,
+    errors: &mut Errors,
+) -> bool {
+    match (need, given) {
+        (Need::Real | Need::Positive, _) => return false,
+        (Need::Distribution, one) => check_part(one, place, errors),
+        (Need::Distributions, Expr::Array(list)) => {
+            list.elems.iter().for_each(|one| check_part(one, place, errors));
+        }
+        (Need::Numbers, Expr::Array(list)) => {
+            list.elems.iter().for_each(|one| check_number(one, errors));
+        }
+        (Need::Numbers, Expr::Repeat(list)) => {
+            check_number(&list.expr, errors);
+        }
+        (Need::Numbers, given) if value(given).is_some() => {
+            let words = "a list of numbers is needed here, such as `[0.9, \
+                         0.1]`";
+            errors.at(given, words);
+        }
+        // A list that the user made in Rust.
+        (Need::Distributions | Need::Numbers, _) => {}
+    }
+    true
+}
+
+/// A distribution within another one.
+fn check_part(given: &Expr, place: Place, errors: &mut Errors) {
+    let place = if place == Place::Data { place } else { Place::Part };
+    match given {
+        Expr::Call(call) if is_meant(call) => {
+            if let Some(part) = Distribution::from_call(call) {
+                part.check(place, errors);
+            }
+        }
+        other => {
+            let words = "a distribution is needed here, such as \
+                         `Normal(0.0, 1.0)`";
+            errors.at(other, words);
         }
     }
 }

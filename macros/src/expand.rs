@@ -10,8 +10,11 @@ use quote::{ToTokens, quote, quote_spanned};
 use syn::spanned::Spanned;
 use syn::{Expr, ExprReference, Generics, ItemStruct, Path, Type};
 
-use crate::tree::{Body, Count, Declaration, Distribution, Field, Line};
-use crate::tree::{Observation, Piece, Right, Sampling, Source, Term, Value};
+use crate::distribution::{BuiltIn, Need, Of};
+use crate::tree::{Body, Count, Declaration, Distribution, Field, Keep};
+use crate::tree::{
+    Kept, Line, Observation, Piece, Right, Sampling, Source, Term, Value,
+};
 
 /// The whole expansion; with `broken`, a program that does nothing stands in,
 /// so that no errors follow from those already reported.
@@ -174,7 +177,7 @@ impl Writer<'_> {
                 std::slice::from_ref(&declaration.right)
             }
             Line::Broken(broken) => &broken.parts,
-            Line::Let(_) => &[],
+            Line::Let(_) | Line::Keep(_) => &[],
         });
         let terms = rights.flat_map(Right::terms).enumerate();
         terms
@@ -202,6 +205,10 @@ impl Writer<'_> {
     fn line(&self, line: &Line) -> TokenStream {
         match line {
             Line::Let(local) => local.statement.clone(),
+            Line::Keep(keep) => {
+                let keep = self.keep(keep);
+                quote!(#keep;)
+            }
             Line::Declaration(declaration) => self.declaration(declaration),
             Line::Broken(_) => TokenStream::new(),
         }
@@ -216,12 +223,18 @@ impl Writer<'_> {
             (Right::Distribution(prior), _) => {
                 let label = label(name, &name.to_string(), &quote!("1"));
                 let label = indexed(label, &declaration.count);
-                self.scalar(&label, prior)
+                match &declaration.given {
+                    None => self.scalar(&label, prior),
+                    Some(given) => self.given(&label, given, prior),
+                }
             }
             (Right::Blocks(terms), count) => self.blocks(name, terms, count),
         };
         let value = match &declaration.count {
-            Count::Each { index, range } => each(index, range, &value),
+            Count::Each { index, range } => {
+                let list = self.list_of(&declaration.right);
+                each(name, &list, index, range, &value)
+            }
             Count::One | Count::Vector(_) => value,
         };
         let at = Span::mixed_site().located_at(name.span());
@@ -240,7 +253,59 @@ impl Writer<'_> {
         quote_spanned!(at=> #run.scalar(#label, #prior)?)
     }
 
-    /// `run.vector(label, length, prior)?`
+    /// `run.given(label, &datum, prior)?`
+    fn given(
+        &self,
+        label: &TokenStream,
+        given: &Expr,
+        prior: &Distribution,
+    ) -> TokenStream {
+        let span = prior.path.span();
+        let (run, prior) = (at(span, "run"), self.distribution(prior));
+        let given = reference(given);
+        let at = Span::mixed_site().located_at(span);
+        quote_spanned!(at=> #run.given(#label, #given, #prior)?)
+    }
+
+    /// The type of a list of what is declared for each index; numbers say
+    /// theirs, so that each may depend on those before it.
+    fn list_of(&self, right: &Right) -> TokenStream {
+        let kind = self.kind;
+        match right {
+            Right::Distribution(_) => quote! {
+                ::couloir::block::List::<::couloir::Real<#kind>>
+            },
+            Right::Blocks(_) => quote!(::couloir::block::List),
+        }
+    }
+
+    /// `let name = value; run.keep(label, &name)`, `run.keep_draw(..)`
+    fn keep(&self, keep: &Keep) -> TokenStream {
+        let name = &keep.name;
+        let run = at(name.span(), "run");
+        let mut label = label(name, &name.to_string(), &quote!("1"));
+        if let Some(index) = &keep.index {
+            let at = Span::mixed_site().located_at(index.span());
+            label = quote_spanned!(at=> #label.at(#index));
+        }
+        let at = Span::mixed_site().located_at(name.span());
+        match (&keep.right, keep.bound()) {
+            (Kept::Drawn(law), _) => {
+                let law = self.distribution(law);
+                quote_spanned!(at=> #run.keep_draw(#label, #law))
+            }
+            (Kept::Value(value), Some(name)) => quote_spanned! {at=>
+                let #name = #value;
+                #run.keep(#label, &#name)
+            },
+            (Kept::Value(value), None) => {
+                let value = reference(value);
+                quote_spanned!(at=> #run.keep(#label, #value))
+            }
+        }
+    }
+
+    /// `run.vector(label, length, prior)?`, or `run.joint(..)?`
     fn vector(
         &self,
         name: &Ident,
@@ -248,10 +313,17 @@ impl Writer<'_> {
         prior: &Distribution,
     ) -> TokenStream {
         let label = label(name, &name.to_string(), &quote!("1"));
+        let known = prior.path.get_ident().and_then(BuiltIn::named);
+        let several = known.is_some_and(|known| known.of == Of::Several);
         let span = prior.path.span();
         let (run, prior) = (at(span, "run"), self.distribution(prior));
         let at = Span::mixed_site().located_at(span);
-        quote_spanned!(at=> #run.vector(#label, #length, #prior)?)
+        match several {
+            true => quote_spanned!(at=> #run.joint(#label, #length, #prior)?),
+            false => {
+                quote_spanned!(at=> #run.vector(#label, #length, #prior)?)
+            }
+        }
     }
 
     /// `::couloir::prior::Name::<K>::new(..)`, or `path::Own::new(..)`.
@@ -259,11 +331,43 @@ impl Writer<'_> {
         let Distribution { path, arguments } = given;
         let kind = self.kind;
         let at = Span::mixed_site().located_at(path.span());
-        match path.get_ident() {
-            Some(name) => quote_spanned! {at=>
+        let Some(name) = path.get_ident() else {
+            return quote_spanned!(at=> #path::new(#arguments));
+        };
+        match BuiltIn::named(name).filter(|known| known.has_parts()) {
+            None => quote_spanned! {at=>
                 ::couloir::prior::#name::<#kind>::new(#arguments)
             },
-            None => quote_spanned!(at=> #path::new(#arguments)),
+            Some(known) => {
+                let needs = known.arguments.iter().map(|one| one.need);
+                let arguments = arguments.iter().zip(needs);
+                let arguments =
+                    arguments.map(|(given, need)| self.part(given, need));
+                quote_spanned! {at=>
+                    ::couloir::prior::#name::<#kind, _>::new(#(#arguments),*)
+                }
+            }
+        }
+    }
+
+    /// An argument of a distribution that is made of others; a list of them
+    /// is a tuple.
+    fn part(&self, given: &Expr, need: Need) -> TokenStream {
+        match (need, given) {
+            (Need::Distribution | Need::Distributions, Expr::Call(call)) => {
+                let part = Distribution::from_call(call);
+                part.map_or_else(
+                    || given.to_token_stream(),
+                    |part| self.distribution(&part),
+                )
+            }
+            (Need::Distributions, Expr::Array(list)) => {
+                let parts = list.elems.iter();
+                let parts = parts.map(|one| self.part(one, need));
+                let at = Span::mixed_site().located_at(given.span());
+                quote_spanned!(at=> (#(#parts,)*))
+            }
+            _ => given.to_token_stream(),
         }
     }
 
@@ -440,6 +544,12 @@ impl Writer<'_> {
                 Piece::Braces(span, inside) => {
                     braced(self.pieces(inside), *span)
                 }
+                Piece::Keep(keep) => self.keep(keep),
+                Piece::Increment(word, value) => {
+                    let run = at(word.span(), "run");
+                    let at = Span::mixed_site().located_at(word.span());
+                    quote_spanned!(at=> #run.add(#value)?)
+                }
                 Piece::Observation(line) => self.observation(line),
                 Piece::Broken(_) => TokenStream::new(),
             })
@@ -487,16 +597,24 @@ fn indexed(label: TokenStream, count: &Count) -> TokenStream {
     }
 }
 
-/// `{ for index in range { list.push(value) } list }`
-fn each(index: &Ident, range: &Expr, value: &TokenStream) -> TokenStream {
+/// `{ for index in range { name.push(value) } name }`
+///
+/// The list has the user's name, so that a value may depend on those before.
+fn each(
+    name: &Ident,
+    list: &TokenStream,
+    index: &Ident,
+    range: &Expr,
+    value: &TokenStream,
+) -> TokenStream {
     let at = Span::mixed_site().located_at(index.span());
     quote_spanned! {at=> {
-        let mut all = ::couloir::block::List::new();
+        let mut #name = #list::new();
         for #index in #range {
             let one = #value;
-            all.push(one);
+            #name.push(one);
         }
-        all
+        #name
     }}
 }
 

@@ -11,6 +11,7 @@ mod check;
 mod distribution;
 mod errors;
 mod expand;
+mod keep;
 mod label;
 mod parse;
 mod split;
@@ -38,12 +39,16 @@ use errors::Errors;
 /// |---|---|
 /// | `centre ~ Normal(0.3, 0.1);` | an unknown |
 /// | `z[n] ~ Normal(0.0, 1.0);` | a vector of `n` of them, any expression of type `usize` |
-/// | `y[i in 0..n] ~ Normal(z[i], 1.0);` | one for each index, each with its own prior |
+/// | `y[i in 0..n] ~ Normal(z[i], 1.0);` | one for each index, each with its own prior, which may depend on those before it (`y[i - 1]`) |
+/// | `mu[k] ~ Ordered(Normal(0.0, 2.0));` | `k` of them in ascending order |
+/// | `share[k] ~ Dirichlet([1.0; 3]);` | `k` shares that sum to 1; the last follows from the others and is kept beside them |
+/// | `x[i in 0..n] ~ Normal(m, s) given x_seen[i];` | a datum where there is one, an unknown where it is missing: an `Option` that is `None`, an `f64` that is NaN |
 /// | `friction ~ Voellmy { mu: Gamma(9.0, 0.03), xi = drag };` | a block: `:` gives an unknown its prior, `=` a known or shared value |
 /// | `errors ~ Ar { phi: [Uniform(-1.0, 1.0); 2], sigma2: .. };` | a list: `[prior, prior]` or `[prior; count]`, known values `= [a, b]` |
 /// | `friction ~ Coulomb { .. } + Turbulent { .. };` | blocks that add up |
 /// | `friction[i in 0..n] ~ Coulomb { mu = centre + spread * z[i] };` | a block for each index, in a list |
 /// | `let scale = 2.0 * centre;` | nothing: an ordinary `let` |
+/// | `keep scale = 2.0 * centre;` | nothing: a `let` that becomes a column of the draws |
 ///
 /// An unknown of a block is called as its field is (`mu`) while that is
 /// unique in the model, else by its block (`friction.mu`), and where terms of
@@ -59,6 +64,11 @@ use errors::Errors;
 /// `InverseGamma(shape, scale)`, `Exponential(mean)`, `Uniform(low, high)`,
 /// `Beta(a, b)`, `HalfNormal(scale)`, `HalfCauchy(scale)`,
 /// `Cauchy(location, scale)`, `StudentT(freedom, location, scale)`, `Flat()`.
+/// `Truncated(D, low, high)` is one of these cut off, and `Mixture([w, ..],
+/// [D, ..])` several of them with weights that sum to 1. Data may also be
+/// whole numbers from `Poisson(mean)`, `Binomial(trials, p)` and
+/// `Bernoulli(p)`, which no unknown has, or a mixture of such.
+///
 /// They need no import. A path is a `Prior` of one's own: `my::Prior(a)`, or
 /// `self::Prior(a)`, calls its `new(a)`.
 ///
@@ -69,7 +79,18 @@ use errors::Errors;
 ///
 /// - `data ~ prediction + noise;` scores a series; the noise is the last
 ///   summand and was declared above.
-/// - `data ~ Distribution(..);` scores a number, or each of several.
+/// - `data ~ Distribution(..);` scores a number, or each of several, real or
+///   whole.
+/// - `log_density += value;` adds what no distribution says, as one datum.
+///   The word is the language's own.
+/// - `keep name = value;` is a `let` whose number, list or list of lists
+///   becomes a column of the draws (`name`, `name[2]`, `name[2,1]`), once an
+///   inference has made these; `keep name[i] = value;` does so one by one and
+///   binds nothing.
+/// - `keep name ~ Distribution(..);` keeps a new draw for each draw of the
+///   parameters, and binds nothing; `keep name[i] ~ ..` likewise.
+///
+/// A system of differential equations is solved with `couloir::ode`.
 ///
 /// `?` ends the run where there is no flow. Numbers are `Real`s that carry
 /// derivatives: literals and comparisons work as usual. What the macro makes
@@ -87,6 +108,9 @@ use errors::Errors;
 /// | `Gama(9.0, 0.03)`, `Gamma(9.0)`, `Gamma(-1.0, 2.0)` | as `Gamma(shape, scale)` says |
 /// | a name never used, declared twice, used above its line, or a field's | use it, rename it, move it |
 /// | `friction[n] ~ Coulomb { .. }` | `friction[i in 0..n] ~ Coulomb { .. }` |
+/// | `x ~ Poisson(3.0)`, `x ~ Ordered(..)`, `y ~ Dirichlet(..)` | an unknown is real; several are declared together, `x[n] ~ ..` |
+/// | `x[n] ~ .. given y` | `x[i in 0..n] ~ .. given y[i]` |
+/// | `Mixture(0.5, ..)`, `Truncated(x, ..)` | lists of weights, distributions of distributions |
 /// | `Coulomb { .. } + Normal(..)`, `Coulomb {}` | `+` adds blocks with fields |
 /// | a missing `;` or `,` | put it where the message points |
 /// | `data ~ flow.velocity();` | `.. + errors`, or a distribution |

@@ -13,6 +13,7 @@ use syn::{Expr, ExprArray, ItemStruct, Path, Stmt, Token, token};
 use crate::body;
 use crate::distribution;
 use crate::errors::Errors;
+use crate::keep;
 use crate::split::{self, Part};
 use crate::tokens::{attributes, braces, find, group, is_mark, is_word};
 use crate::tokens::{shown, split, stream};
@@ -92,19 +93,43 @@ fn line(trees: &[TokenTree], errors: &mut Errors) -> Option<Line> {
     for attribute in attributes {
         check_attribute(attribute, errors);
     }
+    if keep::start(rest) == Some(0) {
+        let keep = keep::read(rest, errors);
+        return keep.map(|keep| Line::Keep(Box::new(keep)));
+    }
     let Some(tilde) = find(rest, '~') else {
         no_tilde(rest, errors);
         return Some(broken(rest, behind_another_mark(rest, errors)));
     };
     let head = errors.keep(head.parse2(stream(&rest[..tilde])));
-    let right = right(&rest[tilde], &rest[tilde + 1..], errors);
+    let (law, given) = given(&rest[tilde + 1..], errors);
+    let right = right(&rest[tilde], law, errors);
     Some(match (head, right) {
         (Some((name, count)), Ok(right)) => {
-            Line::Declaration(Box::new(Declaration { name, count, right }))
+            Line::Declaration(Box::new(Declaration {
+                name,
+                count,
+                right,
+                given,
+            }))
         }
         (None, Ok(right)) => broken(rest, vec![right]),
         (_, Err(parts)) => broken(rest, parts),
     })
+}
+
+/// What stands before `given`, and the expression behind it.
+fn given<'t>(
+    trees: &'t [TokenTree],
+    errors: &mut Errors,
+) -> (&'t [TokenTree], Option<Expr>) {
+    let word = (1..trees.len()).find(|&i| {
+        let behind = group(&trees[i - 1], Delimiter::Parenthesis).is_some();
+        behind && is_word(&trees[i], "given")
+    });
+    let Some(word) = word else { return (trees, None) };
+    let value = expression(&trees[word], &trees[word + 1..], errors);
+    (&trees[..word], value)
 }
 
 /// A line that was not understood; its name is kept if it has one.

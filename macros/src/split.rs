@@ -4,6 +4,7 @@ use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 
 use crate::distribution::distance;
 use crate::errors::Errors;
+use crate::keep;
 use crate::tokens::{attributes, braces, group, is_mark, is_word, stream};
 
 /// One part of a model, not yet understood.
@@ -135,7 +136,8 @@ fn line_or_struct(line: Vec<TokenTree>) -> Part {
 
 /// Whether the tokens are a line at all, as far as one can tell.
 fn is_declaration(line: &[TokenTree]) -> bool {
-    line.first().is_some_and(|first| is_word(first, "let"))
+    keep::start(line) == Some(0)
+        || line.first().is_some_and(|first| is_word(first, "let"))
         || line.iter().any(|tree| is_mark(tree, '~'))
 }
 

@@ -3,7 +3,7 @@
 
 use proc_macro2::TokenStream;
 
-use crate::distribution::{Argument, BUILT_IN};
+use crate::distribution::{Argument, BUILT_IN, BuiltIn, Need, Of};
 use crate::tree::Line;
 use crate::{expand, understand};
 
@@ -494,15 +494,122 @@ fn no_prefix_of_a_model_panics() {
     }
 }
 
+#[test]
+fn distributions_made_of_others() {
+    let of = |law: &str| format!("x ~ {law};");
+    for right in [
+        "Truncated(Normal(0.0, 1.0), 0.0, f64::INFINITY)",
+        "Mixture([0.5, 0.5], [Normal(0.0, 1.0), Flat()])",
+        "Mixture(&weights, parts)",
+    ] {
+        expect_line(&of(right), &[]);
+    }
+    let wanted = "a distribution is needed here";
+    expect_line(&of("Truncated(y, 0.0, 1.0)"), &[("y", wanted)]);
+    expect_line(
+        &of("Truncated(Normal(0.0, 1.0), 2.0, 1.0)"),
+        &[("Normal(0.0, 1.0), 2.0, 1.0", "low has to be below high")],
+    );
+    expect_line(
+        &of("Truncated(Normal(0, 1.0), 0.0, 1)"),
+        &[("0", "write `0.0`"), ("1", "write `1.0`")],
+    );
+    expect_line(
+        &of("Mixture([1, 0.5], [Gama(1.0, 1.0), y])"),
+        &[("1", "write `1.0`"), ("Gama", "no distribution"), ("y", wanted)],
+    );
+    expect_line(&of("Mixture(0.5, parts)"), &[("0.5", "a list of numbers")]);
+}
+
+#[test]
+fn each_distribution_has_its_place() {
+    expect_line("x ~ Poisson(3.0);", &[("Poisson", "of whole numbers")]);
+    expect_line(
+        "x ~ Mixture([1.0], [Poisson(3.0)]);",
+        &[("Poisson", "of whole numbers")],
+    );
+    expect_line("x[3] ~ Ordered(Normal(0.0, 1.0));", &[]);
+    expect_line("x[3] ~ Dirichlet([1.0; 3]);", &[]);
+    expect_line(
+        "x ~ Dirichlet([1.0; 3]);",
+        &[("Dirichlet", "write `name[n] ~ Dirichlet(weights)`")],
+    );
+    expect_line(
+        "x ~ Truncated(Ordered(Flat()), 0.0, 1.0);",
+        &[("Ordered", "stands alone")],
+    );
+    expect_body("a ~ Poisson(3.0);", &[]);
+    expect_body("a ~ Mixture([1.0], [Poisson(3.0)]);", &[]);
+    expect_body("a ~ Ordered(Flat());", &[("Ordered", "several unknowns")]);
+    let block = "Coulomb { mu: Poisson(3.0) }";
+    expect_block(block, &[("Poisson", "of whole numbers")]);
+}
+
+#[test]
+fn given_data() {
+    let normal = "Normal(0.0, 1.0)";
+    let line = |head: &str, tail: &str| format!("{head} ~ {normal} {tail};");
+    expect_line(&line("x", "given event.x"), &[]);
+    expect_line(&line("x[i in 0..3]", "given event.x[i]"), &[]);
+    expect_line(
+        &line("x[3]", "given event"),
+        &[("event", "write `x[i in 0..3] ~ .. given event[i]`")],
+    );
+    expect_line(&line("x", "given"), &[("given", "a value is missing")]);
+    let own = "x[i in 0..3] ~ Normal(if i > 0 { x[i - 1] } else { a }, 1.0);";
+    expect_line(own, &[]);
+    expect_line("x ~ Normal(x, 1.0);", &[("x", "in its own line")]);
+}
+
+#[test]
+fn what_is_kept_and_added() {
+    expect_line("keep x = 3.0;", &[]);
+    expect_line("keep x[2] ~ Normal(0.0, 1.0); let x = 1.0;", &[]);
+    expect_line("keep x; let x = 1.0;", &[("x", "write `keep x = value;`")]);
+    expect_line(
+        "keep y ~ 3.0; let x = 1.0;",
+        &[("3.0", "a distribution to draw from")],
+    );
+    expect_line(
+        "keep y ~ Gama(3.0); let x = 1.0;",
+        &[("Gama", "no distribution")],
+    );
+    let line = "a ~ Flat();";
+    let body = |more: &str| format!("{line} {more}");
+    expect_body(&body("keep y = centre; f(y);"), &[]);
+    expect_body(&body("for i in 0..3 { keep y[i] = centre; }"), &[]);
+    expect_body(
+        &body("if b { log_density += if b { 1.0 } else { a }; }"),
+        &[],
+    );
+    expect_body(
+        &body("keep y = centre"),
+        &[("centre", "a `;` is missing behind this")],
+    );
+    expect_body(&body("log_density += ;"), &[("", "expected")]);
+    expect_body(
+        &body("keep y ~ Dirichlet([1.0]);"),
+        &[("Dirichlet", "several unknowns")],
+    );
+    // What adds to the density is a likelihood by itself.
+    expect_body("log_density += centre;", &[]);
+}
+
 /// The macro's list of distributions, as the library writes its own.
 #[test]
 fn the_distributions_are_those_of_the_library() {
     let mut own = String::new();
-    for known in BUILT_IN {
+    let plain = |known: &&BuiltIn| {
+        let made = known.arguments.iter().any(|a| a.need == Need::Numbers);
+        known.of == Of::Real && !known.has_parts() && !made
+    };
+    for known in BUILT_IN.iter().filter(plain) {
         let need = |argument: &Argument| match argument {
             Argument { name: "high", .. } => "high: AboveFirst".to_owned(),
-            Argument { name, positive: true } => format!("{name}: Positive"),
-            Argument { name, positive: false } => format!("{name}: Finite"),
+            Argument { name, need: Need::Positive } => {
+                format!("{name}: Positive")
+            }
+            Argument { name, .. } => format!("{name}: Finite"),
         };
         let arguments: Vec<_> = known.arguments.iter().map(need).collect();
         let arguments = arguments.join(", ");

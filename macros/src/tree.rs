@@ -22,6 +22,8 @@ pub(crate) enum Line {
     Declaration(Box<Declaration>),
     /// `let ..;`
     Let(Let),
+    /// `keep ..;`
+    Keep(Box<Keep>),
     /// A line with an error.
     Broken(Broken),
 }
@@ -46,11 +48,28 @@ pub(crate) struct Let {
     pub(crate) statement: TokenStream,
 }
 
+/// `keep name = ..;`, `keep name ~ ..;`, or the same of `name[index]`
+pub(crate) struct Keep {
+    pub(crate) name: Ident,
+    pub(crate) index: Option<Expr>,
+    pub(crate) right: Kept,
+}
+
+/// What is kept.
+pub(crate) enum Kept {
+    /// `= value`
+    Value(Expr),
+    /// `~ Distribution(..)`
+    Drawn(Distribution),
+}
+
 /// `name ~ ..;`, `name[n] ~ ..;` or `name[i in 0..n] ~ ..;`
 pub(crate) struct Declaration {
     pub(crate) name: Ident,
     pub(crate) count: Count,
     pub(crate) right: Right,
+    /// What stands behind `given`.
+    pub(crate) given: Option<Expr>,
 }
 
 /// How many are declared at once.
@@ -124,6 +143,10 @@ pub(crate) enum Piece {
     Token(TokenTree),
     /// `{ .. }`
     Braces(Span, Vec<Piece>),
+    /// A `keep` line.
+    Keep(Box<Keep>),
+    /// `log_density += ..`, with the word.
+    Increment(Ident, Box<Expr>),
     /// A `~` line.
     Observation(Box<Observation>),
     /// A `~` line with an error, and its right side where that has none.
@@ -151,7 +174,7 @@ impl Line {
         match self {
             Self::Declaration(declaration) => Some(&declaration.name),
             Self::Broken(broken) => broken.name.as_ref(),
-            Self::Let(_) => None,
+            Self::Let(_) | Self::Keep(_) => None,
         }
     }
 }
@@ -191,7 +214,29 @@ impl Value {
     }
 }
 
+impl Keep {
+    /// The name that it binds: an indexed one and a draw bind none.
+    pub(crate) fn bound(&self) -> Option<&Ident> {
+        match (&self.index, &self.right) {
+            (None, Kept::Value(_)) => Some(&self.name),
+            _ => None,
+        }
+    }
+}
+
 impl Body {
+    /// All draws that are kept, at any depth.
+    pub(crate) fn drawn(&self) -> Vec<&Distribution> {
+        let mut found = Vec::new();
+        collect_drawn(&self.pieces, &mut found);
+        found
+    }
+
+    /// Whether it adds to the log density, at any depth.
+    pub(crate) fn adds(&self) -> bool {
+        adds(&self.pieces)
+    }
+
     /// All `~` lines, at any depth: left and right side, if understood.
     pub(crate) fn lines(&self) -> Vec<(Option<&Expr>, &Sampling)> {
         let mut found = Vec::new();
@@ -211,7 +256,32 @@ fn collect<'a>(
             }
             Piece::Broken(Some(law)) => found.push((None, law)),
             Piece::Braces(_, inner) => collect(inner, found),
-            Piece::Token(_) | Piece::Broken(None) => {}
+            Piece::Token(_)
+            | Piece::Broken(None)
+            | Piece::Keep(_)
+            | Piece::Increment(..) => {}
         }
     }
+}
+
+fn collect_drawn<'a>(pieces: &'a [Piece], found: &mut Vec<&'a Distribution>) {
+    for piece in pieces {
+        match piece {
+            Piece::Keep(keep) => {
+                if let Kept::Drawn(one) = &keep.right {
+                    found.push(one);
+                }
+            }
+            Piece::Braces(_, inner) => collect_drawn(inner, found),
+            _ => {}
+        }
+    }
+}
+
+fn adds(pieces: &[Piece]) -> bool {
+    pieces.iter().any(|piece| match piece {
+        Piece::Increment(..) => true,
+        Piece::Braces(_, inner) => adds(inner),
+        _ => false,
+    })
 }

@@ -28,6 +28,7 @@ use nalgebra::DMatrix;
 
 use crate::error::{Error, Result};
 
+mod array;
 mod ess;
 mod kde;
 mod kolmogorov;
@@ -39,6 +40,7 @@ mod rhat;
 mod spectrum;
 mod summary;
 
+pub use array::Array;
 pub use ess::{
     ess_bulk, ess_mean, ess_quantile, ess_tail, mcse_mean, mcse_quantile,
 };

@@ -8,7 +8,11 @@ use crate::draws::{Draws, Summary, summarise};
 impl Display for Inference {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         if let Some(draws) = &self.draws {
+            head(f)?;
             tell_draws(draws, f)?;
+        }
+        if let Some(kept) = &self.kept {
+            tell_draws(kept, f)?;
         }
         for m in &self.marginals {
             let Marginal { name, mean, sd, .. } = m;
@@ -32,12 +36,15 @@ impl Display for Inference {
     }
 }
 
-fn tell_draws(draws: &Draws, f: &mut Formatter<'_>) -> Result {
+fn head(f: &mut Formatter<'_>) -> Result {
     writeln!(
         f,
         "{:18} {:>9} {:>9} {:>9} {:>9} {:>6} {:>6}",
         "parameter", "mean", "sd", "5 %", "95 %", "R-hat", "ESS"
-    )?;
+    )
+}
+
+fn tell_draws(draws: &Draws, f: &mut Formatter<'_>) -> Result {
     summarise(draws).iter().try_for_each(|s| {
         let name = match s.unit.as_str() {
             "1" | "value" | "value2" => s.name.clone(),

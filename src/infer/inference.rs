@@ -11,6 +11,9 @@ use crate::model::Cost;
 pub struct Inference {
     /// Draws from the posterior, of the parameters as named.
     pub draws: Option<Draws>,
+    /// What the model keeps beside its parameters (`keep` in `model!`), at
+    /// each of the draws; `None` where it keeps nothing.
+    pub kept: Option<Draws>,
     /// The figures of each parameter, where the draws are of chains: what
     /// the warnings about those were read off.
     pub summaries: Vec<Summary>,

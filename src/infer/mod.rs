@@ -14,6 +14,7 @@ mod display;
 mod estimate;
 mod groups;
 mod inference;
+mod kept;
 pub(crate) mod nested;
 mod profile;
 mod proposal;
@@ -33,6 +34,7 @@ pub(crate) use convergence::convergence;
 pub(crate) use estimate::Precision;
 pub use groups::{Group, Grouped};
 pub use inference::{Evidence, Inference, LEVELS, Marginal, Mode};
+pub use kept::kept;
 pub use proposal::Mixture;
 pub(crate) use proposal::student_constant;
 pub use search::{HeldGrid, HeldPlace, SearchSpace};
@@ -78,8 +80,8 @@ pub trait Backend: Debug + Sync {
     ) -> Result<Inference>;
 }
 
-/// Runs a backend on a posterior and adds what it cost, and whether chains
-/// have converged.
+/// Runs a backend on a posterior and adds what it cost, whether chains have
+/// converged, and what the model keeps at each draw.
 ///
 /// # Errors
 /// As [`Backend::explore`], and a model whose parameters are not the same at
@@ -93,6 +95,9 @@ pub fn infer(
     let begun = Instant::now();
     let before = posterior.cost();
     let mut inference = backend.explore(posterior, seed, progress)?;
+    if let Some(draws) = &inference.draws {
+        inference.kept = kept(posterior, draws, seed.called("kept"))?;
+    }
     let after = posterior.cost();
     inference.cost = Cost {
         densities: after.densities - before.densities,

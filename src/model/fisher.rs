@@ -20,7 +20,7 @@ use super::run::Source;
 use crate::error::{Error, Outcome, Result};
 use crate::noise::{Informing, Noise};
 use crate::observe::Series;
-use crate::prior::Prior;
+use crate::prior::Distribution;
 use crate::scalar::{Forward, Grad, Kind, Real};
 
 /// Derivatives of the innovations, one column a datum, and how the priors bend.
@@ -84,7 +84,16 @@ impl<K: Forward> Listener<K> for Part<'_, K> {
         Ok(())
     }
 
-    fn element(&mut self, _: f64, log_density: Real<K>, _: &dyn Prior<K>) {
+    fn element(
+        &mut self,
+        _: f64,
+        log_density: Real<K>,
+        _: &dyn Distribution<K>,
+    ) {
+        self.columns.push(log_density);
+    }
+
+    fn increment(&mut self, log_density: Real<K>) {
         self.columns.push(log_density);
     }
 }

@@ -5,7 +5,7 @@
 pub struct Label<'a> {
     name: &'a str,
     unit: &'a str,
-    indices: [Option<usize>; 2],
+    indices: [Option<usize>; 3],
     /// The label of the event that it is a parameter of; empty for none.
     event: &'a str,
 }
@@ -13,11 +13,12 @@ pub struct Label<'a> {
 impl<'a> Label<'a> {
     /// A parameter of this name; unit "1" for a pure number.
     pub const fn new(name: &'a str, unit: &'a str) -> Self {
-        Self { name, unit, indices: [None; 2], event: "" }
+        Self { name, unit, indices: [None; 3], event: "" }
     }
 
     /// The `index`-th of several (from 0); its name counts from 1. A second
-    /// index is that of a list within one of several blocks.
+    /// index is that of a list within one of several, a third of one in
+    /// that.
     ///
     /// ```
     /// use couloir::Label;
@@ -28,8 +29,9 @@ impl<'a> Label<'a> {
     #[must_use]
     pub const fn at(self, index: usize) -> Self {
         let indices = match self.indices {
-            [None, _] => [Some(index), None],
-            [outer, _] => [outer, Some(index)],
+            [None, ..] => [Some(index), None, None],
+            [outer, None, _] => [outer, Some(index), None],
+            [outer, inner, _] => [outer, inner, Some(index)],
         };
         Self { indices, ..self }
     }
@@ -50,12 +52,11 @@ impl<'a> Label<'a> {
     }
 
     fn own_name(&self) -> String {
-        match self.indices {
-            [Some(i), Some(j)] => {
-                format!("{}[{},{}]", self.name, i + 1, j + 1)
-            }
-            [Some(i), None] => format!("{}[{}]", self.name, i + 1),
-            _ => self.name.to_owned(),
+        let indices = self.indices.iter().flatten();
+        let indices: Vec<_> = indices.map(|i| (i + 1).to_string()).collect();
+        match indices.is_empty() {
+            true => self.name.to_owned(),
+            false => format!("{}[{}]", self.name, indices.join(",")),
         }
     }
 

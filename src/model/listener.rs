@@ -4,7 +4,7 @@ use super::label::Label;
 use crate::error::{Outcome, Stop};
 use crate::noise::{Noise, Stationary};
 use crate::observe::Series;
-use crate::prior::{Prior, Support};
+use crate::prior::{Distribution, Prior};
 use crate::scalar::{Kind, Plain, Real};
 use crate::seed::Rng;
 
@@ -69,8 +69,19 @@ pub trait Listener<K: Kind> {
         &mut self,
         _value: f64,
         _log_density: Real<K>,
-        _distribution: &dyn Prior<K>,
+        _distribution: &dyn Distribution<K>,
     ) {
+    }
+
+    /// A datum was scored of which the model knows no distribution.
+    fn increment(&mut self, _log_density: Real<K>) {}
+
+    /// A quantity was worked out or drawn that is to be kept.
+    fn kept(&mut self, _label: &Label<'_>, _value: f64) {}
+
+    /// Where draws that are to be kept come from; without it, none are made.
+    fn chance(&mut self) -> Option<&mut Rng> {
+        None
     }
 }
 
@@ -122,11 +133,7 @@ impl Listener<Plain> for Collector {
         c.natural.push(declaration.value);
         c.line.push(support.to_line(declaration.value));
         c.proper.push(declaration.prior.is_proper());
-        c.bounds.push(match support {
-            Support::Line => (f64::NEG_INFINITY, f64::INFINITY),
-            Support::Above(low) => (low.value(), f64::INFINITY),
-            Support::Between(low, high) => (low.value(), high.value()),
-        });
+        c.bounds.push(support.ends());
     }
 
     fn series(
@@ -153,8 +160,12 @@ impl Listener<Plain> for Collector {
         &mut self,
         _: f64,
         log_density: Real<Plain>,
-        _: &dyn Prior<Plain>,
+        _: &dyn Distribution<Plain>,
     ) {
+        self.collected.pointwise.push(log_density.value());
+    }
+
+    fn increment(&mut self, log_density: Real<Plain>) {
         self.collected.pointwise.push(log_density.value());
     }
 }
@@ -224,7 +235,7 @@ impl Listener<Plain> for Replicates<'_> {
         &mut self,
         _: f64,
         _: Real<Plain>,
-        distribution: &dyn Prior<Plain>,
+        distribution: &dyn Distribution<Plain>,
     ) {
         let draw = distribution.draw(self.rng).unwrap_or(f64::NAN);
         self.elements.push(draw);

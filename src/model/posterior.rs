@@ -9,10 +9,11 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use super::density::{Density, Weights};
 use super::information::Information;
-use super::listener::{Collected, Collector, Places};
+use super::listener::{Collected, Collector, Listener, Places};
 use super::program::{Model, Point};
 use super::run::SAME_PARAMETERS;
 use crate::error::{Error, Result};
+use crate::scalar::Plain;
 use crate::seed::Rng;
 
 /// A parameter of a model.
@@ -156,6 +157,20 @@ impl<'m> Posterior<'m> {
         let information = self.model.information(z)?;
         self.tally.count(GRADIENTS, &information.density);
         Ok(information)
+    }
+
+    /// The density at a point, with a listener of one's own.
+    ///
+    /// # Errors
+    /// As [`Posterior::density`].
+    pub(crate) fn hear(
+        &self,
+        point: Point<'_>,
+        listener: &mut dyn Listener<Plain>,
+    ) -> Result<Density> {
+        let density = self.model.evaluate(point, Some(listener))?;
+        self.tally.count(DENSITIES, &density);
+        Ok(density)
     }
 
     /// Everything that the model says at a point.

@@ -4,6 +4,7 @@
 //! where values come from (a point on the real line, a point as named, draws
 //! from the prior) and who listens.
 
+use super::data::Data;
 use super::label::Label;
 use super::listener::{Declaration, Listener};
 use crate::block::{List, Named};
@@ -13,7 +14,7 @@ use crate::error::{Error, Outcome, Stop};
 use crate::mechanism::Change;
 use crate::noise::{Noise, Wide};
 use crate::observe::{Prediction, Series};
-use crate::prior::{Prior, Support};
+use crate::prior::{Distribution, Prior};
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 
@@ -170,6 +171,42 @@ impl<'r, K: Kind> Run<'r, K> {
         self.log_jacobian = inner.log_jacobian;
         self.log_likelihood = inner.log_likelihood;
         outcome
+    }
+
+    /// The label of the event that the run is in; empty for none.
+    pub(super) fn event(&self) -> &'r str {
+        self.setting.event
+    }
+
+    /// Who listens.
+    pub(super) fn listener(&mut self) -> Option<&mut (dyn Listener<K> + 'r)> {
+        self.listener.as_deref_mut()
+    }
+
+    /// Where draws from the prior come from, if the run makes such.
+    pub(super) fn draws_prior(&mut self) -> Option<&mut Rng> {
+        match &mut self.source {
+            Source::Prior { rng } => Some(rng),
+            _ => None,
+        }
+    }
+
+    /// Scores a datum of which only the log density is known.
+    pub(super) fn score_one(&mut self, log_density: Real<K>) -> Outcome {
+        self.admit_data()?;
+        if let Some(listener) = &mut self.listener {
+            listener.increment(log_density);
+            if !listener.scores() {
+                return Ok(());
+            }
+        }
+        self.log_likelihood += log_density;
+        match self.log_likelihood.value() == f64::NEG_INFINITY {
+            true => {
+                Err(Stop::Reject("the log density added is minus infinity"))
+            }
+            false => Ok(()),
+        }
     }
 
     /// How many parameters were asked for so far.
@@ -395,17 +432,17 @@ impl<'r, K: Kind> Run<'r, K> {
     ///
     /// # Errors
     /// [`Stop::Reject`] where a value lies outside the distribution.
-    pub fn observe_each<P: Prior<K>>(
+    pub fn observe_each<P: Distribution<K>>(
         &mut self,
         data: &(impl Data + ?Sized),
         distribution: P,
     ) -> Outcome {
         self.admit_data()?;
-        let data = data.data();
         let scores = self.listener.as_ref().is_none_or(|l| l.scores());
-        for (i, &value) in data.iter().enumerate() {
+        for i in 0..data.count() {
+            let value = data.value(i);
             if scores && !value.is_finite() {
-                return Err(not_finite(i, data));
+                return Err(not_finite(i, data.count(), value));
             }
             let log_density = distribution.log_density(Real::new(value));
             if let Some(listener) = &mut self.listener {
@@ -424,13 +461,11 @@ impl<'r, K: Kind> Run<'r, K> {
 
 /// A datum that is no number: no parameter's value would mend it.
 #[cold]
-fn not_finite(index: usize, data: &[f64]) -> Stop {
+fn not_finite(index: usize, count: usize, value: f64) -> Stop {
     Stop::Fail(Error::input(format!(
-        "value {} of {} is {}; expected a finite number: mend it, or leave \
-         out what was not measured",
+        "value {} of {count} is {value}; expected a finite number: mend it, \
+         leave out what was not measured, or declare it with `given`",
         index + 1,
-        data.len(),
-        data[index]
     )))
 }
 
@@ -458,70 +493,3 @@ fn one_too_many(label: &Label<'_>, known: usize) -> Stop {
 pub(super) const SAME_PARAMETERS: &str = "the number, names and order of a model's parameters must not depend on \
      their values: declare the same ones always, as many as there can be, \
      and use those that apply";
-
-/// Numbers that were observed: one, or several.
-#[diagnostic::on_unimplemented(
-    message = "`{Self}` is not data",
-    label = "left of `~` stands what was recorded: a series, an `f64`, or a \
-             list of them"
-)]
-pub trait Data {
-    /// The values.
-    fn data(&self) -> &[f64];
-}
-
-impl Data for f64 {
-    fn data(&self) -> &[f64] {
-        std::slice::from_ref(self)
-    }
-}
-
-impl Data for [f64] {
-    fn data(&self) -> &[f64] {
-        self
-    }
-}
-
-impl Data for Vec<f64> {
-    fn data(&self) -> &[f64] {
-        self
-    }
-}
-
-impl<const N: usize> Data for [f64; N] {
-    fn data(&self) -> &[f64] {
-        self
-    }
-}
-
-impl Data for Series {
-    fn data(&self) -> &[f64] {
-        self.values()
-    }
-}
-
-impl<D: Data + ?Sized> Data for &D {
-    fn data(&self) -> &[f64] {
-        (**self).data()
-    }
-}
-
-/// A prior by reference is one too.
-impl<K: Kind, P: Prior<K> + ?Sized> Prior<K> for &P {
-    #[inline]
-    fn log_density(&self, x: Real<K>) -> Real<K> {
-        (**self).log_density(x)
-    }
-    fn support(&self) -> Support<K> {
-        (**self).support()
-    }
-    fn is_proper(&self) -> bool {
-        (**self).is_proper()
-    }
-    fn quantile(&self, p: f64) -> Option<f64> {
-        (**self).quantile(p)
-    }
-    fn draw(&self, rng: &mut Rng) -> Option<f64> {
-        (**self).draw(rng)
-    }
-}

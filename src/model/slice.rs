@@ -4,14 +4,16 @@ use nalgebra::DVector;
 
 use super::density::{Density, Weights};
 use super::information::Information;
+use super::label::Label;
 use super::listener::{Collector, Declaration, Listener};
 use super::posterior::Posterior;
 use super::program::{Model, Point};
 use crate::error::{Outcome, Result};
 use crate::noise::Noise;
 use crate::observe::Series;
-use crate::prior::Prior;
+use crate::prior::{Distribution, Prior};
 use crate::scalar::{Plain, Real};
+use crate::seed::Rng;
 
 /// A model at given values of some of its parameters, whose priors depend on
 /// none of the unknown ones: a model of those. Its density is
@@ -215,9 +217,21 @@ impl Listener<Plain> for Heard<'_> {
         &mut self,
         value: f64,
         log_density: Real<Plain>,
-        distribution: &dyn Prior<Plain>,
+        distribution: &dyn Distribution<Plain>,
     ) {
         self.listener.element(value, log_density, distribution);
+    }
+
+    fn increment(&mut self, log_density: Real<Plain>) {
+        self.listener.increment(log_density);
+    }
+
+    fn kept(&mut self, label: &Label<'_>, value: f64) {
+        self.listener.kept(label, value);
+    }
+
+    fn chance(&mut self) -> Option<&mut Rng> {
+        self.listener.chance()
     }
 }
 
@@ -252,7 +266,8 @@ mod tests {
         let all = whole.information(&line).unwrap();
         let found = own.information(&z).unwrap();
         let known = AnyPrior::Normal(0.0, 1.0);
-        let known = Prior::<Plain>::log_density(&known, Real::new(line[0]));
+        let known =
+            Distribution::<Plain>::log_density(&known, Real::new(line[0]));
         let off = all.density.log_prior - found.density.log_prior;
         assert!((off - known.value()).abs() < 1e-12);
         assert_eq!(found.density.log_jacobian, all.density.log_jacobian);

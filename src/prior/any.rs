@@ -3,8 +3,9 @@
 use std::fmt;
 
 use super::{
-    Beta, Cauchy, Exponential, Flat, Gamma, HalfCauchy, HalfNormal,
-    InverseGamma, LogNormal, Normal, Prior, StudentT, Support, Uniform,
+    Beta, Cauchy, Distribution, Exponential, Flat, Gamma, HalfCauchy,
+    HalfNormal, InverseGamma, LogNormal, Normal, Prior, StudentT, Support,
+    Uniform,
 };
 use crate::error::{Error, Result};
 use crate::scalar::{Kind, Plain, Real};
@@ -34,7 +35,7 @@ macro_rules! families {
         /// One of the distributions, with numbers as arguments.
         ///
         /// ```
-        /// use couloir::prior::{AnyPrior, Prior};
+        /// use couloir::prior::{AnyPrior, Distribution};
         /// use couloir::scalar::{Plain, Real};
         /// # fn main() -> couloir::Result<()> {
         /// let prior = AnyPrior::parse("Exponential( 2 )")?;
@@ -104,7 +105,7 @@ macro_rules! families {
                 }
             }
 
-            /// [`Prior::draw`], without a kind of number to name.
+            /// [`Distribution::draw`], without a kind of number to name.
             pub fn draw(&self, rng: &mut Rng) -> Option<f64> {
                 match *self {
                     $(Self::$name($($argument),*) =>
@@ -113,7 +114,7 @@ macro_rules! families {
             }
         }
 
-        impl<K: Kind> Prior<K> for AnyPrior {
+        impl<K: Kind> Distribution<K> for AnyPrior {
             #[inline]
             fn log_density(&self, x: Real<K>) -> Real<K> {
                 match *self {
@@ -122,6 +123,12 @@ macro_rules! families {
                 }
             }
 
+            fn draw(&self, rng: &mut Rng) -> Option<f64> {
+                self.draw(rng)
+            }
+        }
+
+        impl<K: Kind> Prior<K> for AnyPrior {
             fn support(&self) -> Support<K> {
                 match *self {
                     $(Self::$name($($argument),*) =>
@@ -135,10 +142,6 @@ macro_rules! families {
 
             fn quantile(&self, p: f64) -> Option<f64> {
                 self.quantile(p)
-            }
-
-            fn draw(&self, rng: &mut Rng) -> Option<f64> {
-                self.draw(rng)
             }
         }
     };

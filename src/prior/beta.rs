@@ -7,10 +7,10 @@
 //! probability it is good to 1e-8 where both arguments are 1e6. rand_distr's
 //! draws are right, but for an occasional 0 or 1, which is moved inside.
 
-use rand_distr::Distribution;
+use rand_distr::Distribution as _;
 
 use super::special::{ln_gamma, root};
-use super::{Prior, Support, impossible, positive, quantile_of};
+use super::{Distribution, Prior, Support, impossible, positive, quantile_of};
 use crate::scalar::{Kind, Plain, Real};
 use crate::seed::Rng;
 
@@ -18,7 +18,7 @@ use crate::seed::Rng;
 /// p(x) = x^(a - 1) (1 - x)^(b - 1) Γ(a + b) / (Γ(a) Γ(b)).
 ///
 /// ```
-/// use couloir::prior::{Beta, Prior};
+/// use couloir::prior::{Beta, Distribution, Prior};
 /// use couloir::scalar::{Plain, Real};
 /// let prior = Beta::<Plain>::new(2.0, 1.0);
 /// // 2 x
@@ -45,7 +45,7 @@ impl<K: Kind> Beta<K> {
     }
 }
 
-impl<K: Kind> Prior<K> for Beta<K> {
+impl<K: Kind> Distribution<K> for Beta<K> {
     #[inline]
     fn log_density(&self, x: Real<K>) -> Real<K> {
         if !(x > 0.0 && x < 1.0) || self.values().is_none() {
@@ -55,6 +55,14 @@ impl<K: Kind> Prior<K> for Beta<K> {
             - ln_beta(self.a, self.b)
     }
 
+    fn draw(&self, rng: &mut Rng) -> Option<f64> {
+        let (a, b) = self.values()?;
+        let x = rand_distr::Beta::new(a, b).ok()?.sample(rng);
+        Some(self.support().nearest(x))
+    }
+}
+
+impl<K: Kind> Prior<K> for Beta<K> {
     fn support(&self) -> Support<K> {
         Support::Between(Real::new(0.0), Real::new(1.0))
     }
@@ -68,12 +76,6 @@ impl<K: Kind> Prior<K> for Beta<K> {
         quantile_of(&self.support(), p, |p| {
             1.0 / (1.0 + (-logit_quantile(a, b, p, 1.0 - p)).exp())
         })
-    }
-
-    fn draw(&self, rng: &mut Rng) -> Option<f64> {
-        let (a, b) = self.values()?;
-        let x = rand_distr::Beta::new(a, b).ok()?.sample(rng);
-        Some(self.support().nearest(x))
     }
 }
 

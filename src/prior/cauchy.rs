@@ -5,10 +5,13 @@
 
 use std::f64::consts::PI;
 
-use rand_distr::Distribution;
+use rand_distr::Distribution as _;
 
 use super::special::ln_1p_squared;
-use super::{Prior, Support, impossible, positive, quantile_of};
+use super::{
+    Cumulative, Distribution, Prior, Support, impossible, positive,
+    quantile_of,
+};
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 
@@ -16,7 +19,7 @@ use crate::seed::Rng;
 /// p(x) = 1 / (pi scale (1 + ((x - location) / scale)^2)).
 ///
 /// ```
-/// use couloir::prior::{Cauchy, Prior};
+/// use couloir::prior::{Cauchy, Distribution, Prior};
 /// use couloir::scalar::{Plain, Real};
 /// let prior = Cauchy::<Plain>::new(1.0, 5.0);
 /// assert!((prior.log_density(Real::new(6.0)).value() + 3.4473150).abs() < 1e-7);
@@ -45,7 +48,7 @@ impl<K: Kind> Cauchy<K> {
     }
 }
 
-impl<K: Kind> Prior<K> for Cauchy<K> {
+impl<K: Kind> Distribution<K> for Cauchy<K> {
     #[inline]
     fn log_density(&self, x: Real<K>) -> Real<K> {
         let deviate = (x - self.location) / self.scale;
@@ -55,6 +58,14 @@ impl<K: Kind> Prior<K> for Cauchy<K> {
         -PI.ln() - self.scale.ln() - ln_1p_squared(deviate)
     }
 
+    fn draw(&self, rng: &mut Rng) -> Option<f64> {
+        let (location, scale) = self.values()?;
+        let x = rand_distr::Cauchy::new(location, scale).ok()?.sample(rng);
+        Some(self.support().nearest(x))
+    }
+}
+
+impl<K: Kind> Prior<K> for Cauchy<K> {
     fn support(&self) -> Support<K> {
         Support::Line
     }
@@ -75,10 +86,22 @@ impl<K: Kind> Prior<K> for Cauchy<K> {
             }
         })
     }
+}
 
-    fn draw(&self, rng: &mut Rng) -> Option<f64> {
-        let (location, scale) = self.values()?;
-        let x = rand_distr::Cauchy::new(location, scale).ok()?.sample(rng);
-        Some(self.support().nearest(x))
+impl<K: Kind> Cumulative<K> for Cauchy<K> {
+    fn log_below(&self, x: Real<K>) -> Real<K> {
+        ln_tail((self.location - x) / self.scale)
+    }
+
+    fn log_above(&self, x: Real<K>) -> Real<K> {
+        ln_tail((x - self.location) / self.scale)
+    }
+}
+
+/// ln of the probability of more than `q` scales above the location.
+fn ln_tail<K: Kind>(q: Real<K>) -> Real<K> {
+    match q > 1.0 {
+        true => ((1.0 / q).atan() / PI).ln(),
+        false => (0.5 - q.atan() / PI).ln(),
     }
 }

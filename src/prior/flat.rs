@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use super::{Prior, Support, impossible};
+use super::{Distribution, Prior, Support, impossible};
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 
@@ -10,7 +10,7 @@ use crate::seed::Rng;
 /// no quantiles and no draws.
 ///
 /// ```
-/// use couloir::prior::{Flat, Prior};
+/// use couloir::prior::{Distribution, Flat, Prior};
 /// use couloir::scalar::{Plain, Real};
 /// let prior = Flat::<Plain>::new();
 /// assert_eq!(prior.log_density(Real::new(7.0)).value(), 0.0);
@@ -29,12 +29,18 @@ impl<K: Kind> Flat<K> {
     }
 }
 
-impl<K: Kind> Prior<K> for Flat<K> {
+impl<K: Kind> Distribution<K> for Flat<K> {
     #[inline]
     fn log_density(&self, x: Real<K>) -> Real<K> {
         if x.value().is_finite() { Real::new(0.0) } else { impossible() }
     }
 
+    fn draw(&self, _: &mut Rng) -> Option<f64> {
+        None
+    }
+}
+
+impl<K: Kind> Prior<K> for Flat<K> {
     fn support(&self) -> Support<K> {
         Support::Line
     }
@@ -44,10 +50,6 @@ impl<K: Kind> Prior<K> for Flat<K> {
     }
 
     fn quantile(&self, _: f64) -> Option<f64> {
-        None
-    }
-
-    fn draw(&self, _: &mut Rng) -> Option<f64> {
         None
     }
 }

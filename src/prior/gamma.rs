@@ -6,11 +6,11 @@
 //! regularised gamma functions. rand_distr's draws underflow to 0 for small
 //! shapes; those are formed as logarithms here.
 
-use rand_distr::{Distribution, Exp1};
+use rand_distr::{Distribution as _, Exp1};
 use statrs::function::gamma::{checked_gamma_lr, checked_gamma_ur};
 
 use super::special::{ln_gamma, normal_quantile, root};
-use super::{Prior, Support, impossible, positive, quantile_of};
+use super::{Distribution, Prior, Support, impossible, positive, quantile_of};
 use crate::scalar::{Kind, Plain, Real};
 use crate::seed::Rng;
 
@@ -18,7 +18,7 @@ use crate::seed::Rng;
 /// p(x) = x^(shape - 1) exp(-x / scale) / (Γ(shape) scale^shape).
 ///
 /// ```
-/// use couloir::prior::{Gamma, Prior};
+/// use couloir::prior::{Distribution, Gamma, Prior};
 /// use couloir::scalar::{Plain, Real};
 /// let prior = Gamma::<Plain>::new(2.0, 3.0);
 /// // x exp(-x / 3) / 9
@@ -45,7 +45,7 @@ impl<K: Kind> Gamma<K> {
     }
 }
 
-impl<K: Kind> Prior<K> for Gamma<K> {
+impl<K: Kind> Distribution<K> for Gamma<K> {
     #[inline]
     fn log_density(&self, x: Real<K>) -> Real<K> {
         if !positive(x.value()) || self.values().is_none() {
@@ -58,6 +58,14 @@ impl<K: Kind> Prior<K> for Gamma<K> {
             - ln_gamma(self.shape)
     }
 
+    fn draw(&self, rng: &mut Rng) -> Option<f64> {
+        let (shape, scale) = self.values()?;
+        let x = (scale.ln() + ln_draw(shape, rng)?).exp();
+        Some(self.support().nearest(x))
+    }
+}
+
+impl<K: Kind> Prior<K> for Gamma<K> {
     fn support(&self) -> Support<K> {
         Support::Above(Real::new(0.0))
     }
@@ -71,12 +79,6 @@ impl<K: Kind> Prior<K> for Gamma<K> {
         quantile_of(&self.support(), p, |p| {
             (scale.ln() + ln_quantile(shape, p, 1.0 - p)).exp()
         })
-    }
-
-    fn draw(&self, rng: &mut Rng) -> Option<f64> {
-        let (shape, scale) = self.values()?;
-        let x = (scale.ln() + ln_draw(shape, rng)?).exp();
-        Some(self.support().nearest(x))
     }
 }
 

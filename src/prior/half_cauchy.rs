@@ -2,10 +2,13 @@
 
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
-use rand_distr::Distribution;
+use rand_distr::Distribution as _;
 
 use super::special::ln_1p_squared;
-use super::{Prior, Support, impossible, positive, quantile_of};
+use super::{
+    Cumulative, Distribution, Prior, Support, impossible, positive,
+    quantile_of,
+};
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 
@@ -13,7 +16,7 @@ use crate::seed::Rng;
 /// p(x) = 2 / (pi scale (1 + (x / scale)^2)).
 ///
 /// ```
-/// use couloir::prior::{HalfCauchy, Prior};
+/// use couloir::prior::{Distribution, HalfCauchy, Prior};
 /// use couloir::scalar::{Plain, Real};
 /// let prior = HalfCauchy::<Plain>::new(5.0);
 /// assert!((prior.log_density(Real::new(5.0)).value() + 2.7541678).abs() < 1e-7);
@@ -38,7 +41,7 @@ impl<K: Kind> HalfCauchy<K> {
     }
 }
 
-impl<K: Kind> Prior<K> for HalfCauchy<K> {
+impl<K: Kind> Distribution<K> for HalfCauchy<K> {
     #[inline]
     fn log_density(&self, x: Real<K>) -> Real<K> {
         if !(positive(x.value()) && positive(self.scale.value())) {
@@ -47,6 +50,14 @@ impl<K: Kind> Prior<K> for HalfCauchy<K> {
         FRAC_2_PI.ln() - self.scale.ln() - ln_1p_squared(x / self.scale)
     }
 
+    fn draw(&self, rng: &mut Rng) -> Option<f64> {
+        let scale = self.value()?;
+        let x = rand_distr::Cauchy::new(0.0, scale).ok()?.sample(rng);
+        Some(self.support().nearest(x.abs()))
+    }
+}
+
+impl<K: Kind> Prior<K> for HalfCauchy<K> {
     fn support(&self) -> Support<K> {
         Support::Above(Real::new(0.0))
     }
@@ -65,10 +76,14 @@ impl<K: Kind> Prior<K> for HalfCauchy<K> {
             }
         })
     }
+}
 
-    fn draw(&self, rng: &mut Rng) -> Option<f64> {
-        let scale = self.value()?;
-        let x = rand_distr::Cauchy::new(0.0, scale).ok()?.sample(rng);
-        Some(self.support().nearest(x.abs()))
+impl<K: Kind> Cumulative<K> for HalfCauchy<K> {
+    fn log_below(&self, x: Real<K>) -> Real<K> {
+        ((x / self.scale).atan() * FRAC_2_PI).ln()
+    }
+
+    fn log_above(&self, x: Real<K>) -> Real<K> {
+        ((self.scale / x).atan() * FRAC_2_PI).ln()
     }
 }

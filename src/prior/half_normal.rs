@@ -2,10 +2,15 @@
 
 use std::f64::consts::{LN_2, SQRT_2};
 
-use rand_distr::{Distribution, StandardNormal};
+use rand_distr::{Distribution as _, StandardNormal};
 use statrs::function::erf::erf_inv;
 
-use super::{LN_SQRT_2PI, Prior, Support, impossible, positive, quantile_of};
+use super::cumulative::ln_1m_exp;
+use super::special::ln_normal_below;
+use super::{
+    Cumulative, Distribution, LN_SQRT_2PI, Prior, Support, impossible,
+    positive, quantile_of,
+};
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 
@@ -13,7 +18,7 @@ use crate::seed::Rng;
 /// p(x) = 2 exp(-x^2 / (2 scale^2)) / (scale sqrt(2 pi)).
 ///
 /// ```
-/// use couloir::prior::{HalfNormal, Prior};
+/// use couloir::prior::{Distribution, HalfNormal, Prior};
 /// use couloir::scalar::{Plain, Real};
 /// let prior = HalfNormal::<Plain>::new(2.0);
 /// assert!((prior.log_density(Real::new(2.0)).value() + 1.4189385).abs() < 1e-7);
@@ -38,7 +43,7 @@ impl<K: Kind> HalfNormal<K> {
     }
 }
 
-impl<K: Kind> Prior<K> for HalfNormal<K> {
+impl<K: Kind> Distribution<K> for HalfNormal<K> {
     #[inline]
     fn log_density(&self, x: Real<K>) -> Real<K> {
         if !(positive(x.value()) && positive(self.scale.value())) {
@@ -48,6 +53,14 @@ impl<K: Kind> Prior<K> for HalfNormal<K> {
         -0.5 * deviate * deviate - self.scale.ln() + (LN_2 - LN_SQRT_2PI)
     }
 
+    fn draw(&self, rng: &mut Rng) -> Option<f64> {
+        let scale = self.value()?;
+        let z: f64 = StandardNormal.sample(rng);
+        Some(self.support().nearest(scale * z.abs()))
+    }
+}
+
+impl<K: Kind> Prior<K> for HalfNormal<K> {
     fn support(&self) -> Support<K> {
         Support::Above(Real::new(0.0))
     }
@@ -60,10 +73,14 @@ impl<K: Kind> Prior<K> for HalfNormal<K> {
         let scale = self.value()?;
         quantile_of(&self.support(), p, |p| scale * (SQRT_2 * erf_inv(p)))
     }
+}
 
-    fn draw(&self, rng: &mut Rng) -> Option<f64> {
-        let scale = self.value()?;
-        let z: f64 = StandardNormal.sample(rng);
-        Some(self.support().nearest(scale * z.abs()))
+impl<K: Kind> Cumulative<K> for HalfNormal<K> {
+    fn log_below(&self, x: Real<K>) -> Real<K> {
+        ln_1m_exp(self.log_above(x))
+    }
+
+    fn log_above(&self, x: Real<K>) -> Real<K> {
+        ln_normal_below(-x / self.scale) + LN_2
     }
 }

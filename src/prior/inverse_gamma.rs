@@ -7,7 +7,7 @@
 
 use super::gamma::{ln_draw, ln_quantile};
 use super::special::ln_gamma;
-use super::{Prior, Support, impossible, positive, quantile_of};
+use super::{Distribution, Prior, Support, impossible, positive, quantile_of};
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 
@@ -15,7 +15,7 @@ use crate::seed::Rng;
 /// p(x) = scale^shape x^(-shape - 1) exp(-scale / x) / Γ(shape).
 ///
 /// ```
-/// use couloir::prior::{InverseGamma, Prior};
+/// use couloir::prior::{Distribution, InverseGamma, Prior};
 /// use couloir::scalar::{Plain, Real};
 /// let prior = InverseGamma::<Plain>::new(2.0, 1.0);
 /// // exp(-1 / x) / x^3
@@ -42,7 +42,7 @@ impl<K: Kind> InverseGamma<K> {
     }
 }
 
-impl<K: Kind> Prior<K> for InverseGamma<K> {
+impl<K: Kind> Distribution<K> for InverseGamma<K> {
     #[inline]
     fn log_density(&self, x: Real<K>) -> Real<K> {
         if !positive(x.value()) || self.values().is_none() {
@@ -55,6 +55,14 @@ impl<K: Kind> Prior<K> for InverseGamma<K> {
             - ln_gamma(self.shape)
     }
 
+    fn draw(&self, rng: &mut Rng) -> Option<f64> {
+        let (shape, scale) = self.values()?;
+        let x = (scale.ln() - ln_draw(shape, rng)?).exp();
+        Some(self.support().nearest(x))
+    }
+}
+
+impl<K: Kind> Prior<K> for InverseGamma<K> {
     fn support(&self) -> Support<K> {
         Support::Above(Real::new(0.0))
     }
@@ -68,11 +76,5 @@ impl<K: Kind> Prior<K> for InverseGamma<K> {
         quantile_of(&self.support(), p, |p| {
             (scale.ln() - ln_quantile(shape, 1.0 - p, p)).exp()
         })
-    }
-
-    fn draw(&self, rng: &mut Rng) -> Option<f64> {
-        let (shape, scale) = self.values()?;
-        let x = (scale.ln() - ln_draw(shape, rng)?).exp();
-        Some(self.support().nearest(x))
     }
 }

@@ -1,9 +1,12 @@
 //! The log-normal distribution.
 
-use rand_distr::{Distribution, StandardNormal};
+use rand_distr::{Distribution as _, StandardNormal};
 
-use super::special::normal_quantile;
-use super::{LN_SQRT_2PI, Prior, Support, impossible, positive, quantile_of};
+use super::special::{ln_normal_below, normal_quantile};
+use super::{
+    Cumulative, Distribution, LN_SQRT_2PI, Prior, Support, impossible,
+    positive, quantile_of,
+};
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 
@@ -11,7 +14,7 @@ use crate::seed::Rng;
 /// p(x) = exp(-(ln x - mean)^2 / (2 sd^2)) / (x sd sqrt(2 pi)).
 ///
 /// ```
-/// use couloir::prior::{LogNormal, Prior};
+/// use couloir::prior::{Distribution, LogNormal, Prior};
 /// use couloir::scalar::{Plain, Real};
 /// let prior = LogNormal::<Plain>::new(0.0, 1.0);
 /// assert!((prior.log_density(Real::new(1.0)).value() + 0.9189385).abs() < 1e-7);
@@ -37,7 +40,7 @@ impl<K: Kind> LogNormal<K> {
     }
 }
 
-impl<K: Kind> Prior<K> for LogNormal<K> {
+impl<K: Kind> Distribution<K> for LogNormal<K> {
     #[inline]
     fn log_density(&self, x: Real<K>) -> Real<K> {
         if !(positive(x.value()) && positive(self.sd.value())) {
@@ -51,6 +54,14 @@ impl<K: Kind> Prior<K> for LogNormal<K> {
         -0.5 * deviate * deviate - self.sd.ln() - log - LN_SQRT_2PI
     }
 
+    fn draw(&self, rng: &mut Rng) -> Option<f64> {
+        let (mean, sd) = self.values()?;
+        let z: f64 = StandardNormal.sample(rng);
+        Some(self.support().nearest((mean + sd * z).exp()))
+    }
+}
+
+impl<K: Kind> Prior<K> for LogNormal<K> {
     fn support(&self) -> Support<K> {
         Support::Above(Real::new(0.0))
     }
@@ -65,10 +76,14 @@ impl<K: Kind> Prior<K> for LogNormal<K> {
             (mean + sd * normal_quantile(p)).exp()
         })
     }
+}
 
-    fn draw(&self, rng: &mut Rng) -> Option<f64> {
-        let (mean, sd) = self.values()?;
-        let z: f64 = StandardNormal.sample(rng);
-        Some(self.support().nearest((mean + sd * z).exp()))
+impl<K: Kind> Cumulative<K> for LogNormal<K> {
+    fn log_below(&self, x: Real<K>) -> Real<K> {
+        ln_normal_below((x.ln() - self.mean) / self.sd)
+    }
+
+    fn log_above(&self, x: Real<K>) -> Real<K> {
+        ln_normal_below((self.mean - x.ln()) / self.sd)
     }
 }

@@ -1,57 +1,98 @@
-//! Prior distributions: what is known of a parameter before the recording.
+//! Distributions: what is known of a parameter before the recording, and what
+//! data may come from.
 //!
-//! One distribution a file, each with its density, support, quantile and
-//! draws. Parameters of a distribution may be unknowns themselves
-//! (hierarchies), so densities carry derivatives in both.
+//! One distribution a file. A [`Distribution`] scores a number and draws one;
+//! a [`Prior`] has a density besides, with support and quantile. Parameters of
+//! a distribution may be unknowns themselves (hierarchies), so densities carry
+//! derivatives in both. [`Truncated`] and [`Mixture`] are made of others;
+//! [`Ordered`] and [`Dirichlet`] are of several numbers ([`Joint`]).
 //!
 //! A new distribution is one file, its `mod` and `pub use` here, and one line
 //! in the list of `any.rs`, which makes it known to texts.
 
 mod any;
+mod bernoulli;
 mod beta;
+mod binomial;
 mod cauchy;
+mod cumulative;
+mod dirichlet;
 mod exponential;
 mod flat;
 mod gamma;
 mod half_cauchy;
 mod half_normal;
 mod inverse_gamma;
+mod joint;
 mod log_normal;
+mod mixture;
 mod normal;
+mod ordered;
+mod parts;
+mod poisson;
 mod special;
 mod student_t;
 mod support;
 #[cfg(test)]
 mod tests;
+mod truncated;
 mod uniform;
 
 pub use any::{AnyPrior, NAMES};
+pub use bernoulli::Bernoulli;
 pub use beta::Beta;
+pub use binomial::Binomial;
 pub use cauchy::Cauchy;
+pub use cumulative::Cumulative;
+pub use dirichlet::Dirichlet;
 pub use exponential::Exponential;
 pub use flat::Flat;
 pub use gamma::Gamma;
 pub use half_cauchy::HalfCauchy;
 pub use half_normal::HalfNormal;
 pub use inverse_gamma::InverseGamma;
+pub use joint::Joint;
 pub use log_normal::LogNormal;
-pub(crate) use normal::LN_SQRT_2PI;
+pub use mixture::Mixture;
 pub use normal::Normal;
+pub use ordered::Ordered;
+pub use parts::{Parts, PriorParts};
+pub use poisson::Poisson;
+pub(crate) use special::LN_SQRT_2PI;
 pub use student_t::StudentT;
 pub use support::Support;
+pub use truncated::Truncated;
 pub use uniform::Uniform;
 
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 
-/// A probability distribution of one real quantity.
+/// A probability distribution of one quantity: what data may come from.
 ///
 /// Densities are normalised, except for [`Flat`], whose log density is 0.
-pub trait Prior<K: Kind> {
-    /// The natural logarithm of the density at `x`; minus infinity outside
-    /// the support and where the distribution's own arguments are impossible.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a distribution of one number",
+    label = "data are compared with a distribution of one number"
+)]
+pub trait Distribution<K: Kind> {
+    /// The natural logarithm of the density at `x`, of a distribution of
+    /// whole numbers that of the probability; minus infinity outside the
+    /// support and where the distribution's own arguments are impossible.
     fn log_density(&self, x: Real<K>) -> Real<K>;
 
+    /// One draw, strictly inside the support; `None` for an improper
+    /// distribution or impossible arguments.
+    fn draw(&self, rng: &mut Rng) -> Option<f64>;
+}
+
+/// A distribution of a real quantity, which an unknown may have: it has a
+/// density, and says where that is positive.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot be the prior of an unknown",
+    label = "an unknown is a real number: it needs a distribution with a \
+             density"
+)]
+pub trait Prior<K: Kind>: Distribution<K> {
     /// Where the density is positive.
     fn support(&self) -> Support<K>;
 
@@ -65,10 +106,28 @@ pub trait Prior<K: Kind> {
     /// distribution, impossible arguments, a `p` that is no probability, or
     /// where nobody knows it.
     fn quantile(&self, p: f64) -> Option<f64>;
+}
 
-    /// One draw, strictly inside the support; `None` for an improper
-    /// distribution or impossible arguments.
-    fn draw(&self, rng: &mut Rng) -> Option<f64>;
+impl<K: Kind, P: Distribution<K> + ?Sized> Distribution<K> for &P {
+    #[inline]
+    fn log_density(&self, x: Real<K>) -> Real<K> {
+        (**self).log_density(x)
+    }
+    fn draw(&self, rng: &mut Rng) -> Option<f64> {
+        (**self).draw(rng)
+    }
+}
+
+impl<K: Kind, P: Prior<K> + ?Sized> Prior<K> for &P {
+    fn support(&self) -> Support<K> {
+        (**self).support()
+    }
+    fn is_proper(&self) -> bool {
+        (**self).is_proper()
+    }
+    fn quantile(&self, p: f64) -> Option<f64> {
+        (**self).quantile(p)
+    }
 }
 
 /// A quantile from its formula `inside`, which is asked for 0 < p < 1 alone.
@@ -100,4 +159,10 @@ fn impossible<K: Kind>() -> Real<K> {
 #[inline(always)]
 fn positive(x: f64) -> bool {
     x > 0.0 && x < f64::INFINITY
+}
+
+/// Whether `x` is one of the numbers 0, 1, 2, ...
+#[inline(always)]
+fn whole(x: f64) -> bool {
+    x >= 0.0 && x.fract() == 0.0
 }

@@ -1,19 +1,19 @@
 //! The normal distribution.
 
-use rand_distr::{Distribution, StandardNormal};
+use rand_distr::{Distribution as _, StandardNormal};
 
-use super::special::normal_quantile;
-use super::{Prior, Support, impossible, positive, quantile_of};
+use super::special::{LN_SQRT_2PI, ln_normal_below, normal_quantile};
+use super::{
+    Cumulative, Distribution, Prior, Support, impossible, positive,
+    quantile_of,
+};
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
-
-/// ln sqrt(2 pi).
-pub(crate) const LN_SQRT_2PI: f64 = 0.918_938_533_204_672_8;
 
 /// Normal(mean, sd): p(x) = exp(-(x - mean)^2 / (2 sd^2)) / (sd sqrt(2 pi)).
 ///
 /// ```
-/// use couloir::prior::{Normal, Prior};
+/// use couloir::prior::{Distribution, Normal, Prior};
 /// use couloir::scalar::{Plain, Real};
 /// let prior = Normal::<Plain>::new(1.0, 2.0);
 /// assert!((prior.log_density(Real::new(1.0)).value() + 1.6120857).abs() < 1e-7);
@@ -39,7 +39,7 @@ impl<K: Kind> Normal<K> {
     }
 }
 
-impl<K: Kind> Prior<K> for Normal<K> {
+impl<K: Kind> Distribution<K> for Normal<K> {
     #[inline]
     fn log_density(&self, x: Real<K>) -> Real<K> {
         let deviate = (x - self.mean) / self.sd;
@@ -49,6 +49,14 @@ impl<K: Kind> Prior<K> for Normal<K> {
         -0.5 * deviate * deviate - self.sd.ln() - LN_SQRT_2PI
     }
 
+    fn draw(&self, rng: &mut Rng) -> Option<f64> {
+        let (mean, sd) = self.values()?;
+        let z: f64 = StandardNormal.sample(rng);
+        Some(self.support().nearest(mean + sd * z))
+    }
+}
+
+impl<K: Kind> Prior<K> for Normal<K> {
     fn support(&self) -> Support<K> {
         Support::Line
     }
@@ -61,10 +69,14 @@ impl<K: Kind> Prior<K> for Normal<K> {
         let (mean, sd) = self.values()?;
         quantile_of(&self.support(), p, |p| mean + sd * normal_quantile(p))
     }
+}
 
-    fn draw(&self, rng: &mut Rng) -> Option<f64> {
-        let (mean, sd) = self.values()?;
-        let z: f64 = StandardNormal.sample(rng);
-        Some(self.support().nearest(mean + sd * z))
+impl<K: Kind> Cumulative<K> for Normal<K> {
+    fn log_below(&self, x: Real<K>) -> Real<K> {
+        ln_normal_below((x - self.mean) / self.sd)
+    }
+
+    fn log_above(&self, x: Real<K>) -> Real<K> {
+        ln_normal_below((self.mean - x) / self.sd)
     }
 }

@@ -1,8 +1,14 @@
 //! The special functions that several distributions share.
 
+use std::f64::consts::FRAC_1_SQRT_2;
+
+use statrs::function::erf::erfc;
 use statrs::function::gamma;
 
 use crate::scalar::{Kind, Real};
+
+/// ln sqrt(2 pi).
+pub(crate) const LN_SQRT_2PI: f64 = 0.918_938_533_204_672_8;
 
 /// ln of the gamma function for x > 0; its derivative, digamma, is worked
 /// out only for an `x` that has derivatives.
@@ -25,6 +31,34 @@ pub(super) fn ln_1p_squared<K: Kind>(q: Real<K>) -> Real<K> {
         // 1 is lost beside q^2.
         q.chain(2.0 * v.abs().ln(), 2.0 / v)
     }
+}
+
+/// ln of the probability of a standard normal number below `z`.
+pub(super) fn ln_normal_below<K: Kind>(z: Real<K>) -> Real<K> {
+    let v = z.value();
+    let value = if v > 0.0 {
+        (-0.5 * erfc(v * FRAC_1_SQRT_2)).ln_1p()
+    } else if v > -20.0 {
+        (0.5 * erfc(-v * FRAC_1_SQRT_2)).ln()
+    } else {
+        ln_normal_tail(v)
+    };
+    let slope = match v.is_finite() {
+        true => (-0.5 * v * v - LN_SQRT_2PI - value).exp(),
+        false => 0.0,
+    };
+    z.chain(value, slope)
+}
+
+/// The same far below 0, by 1 - 1/z^2 + 3/z^4 - 15/z^6 + ... (Abramowitz and
+/// Stegun 1964, 26.2.12); the first term left out is below 1e-16 at -20.
+fn ln_normal_tail(z: f64) -> f64 {
+    let inverse = 1.0 / (z * z);
+    let mut sum = 1.0;
+    for odd in [15.0, 13.0, 11.0, 9.0, 7.0, 5.0, 3.0, 1.0] {
+        sum = 1.0 - odd * inverse * sum;
+    }
+    -0.5 * z * z - (-z).ln() - LN_SQRT_2PI + sum.ln()
 }
 
 /// The standard normal quantile for 0 < p < 1.

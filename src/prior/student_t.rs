@@ -7,12 +7,12 @@
 //! degrees, as the chi-squared number below the root underflows; here that
 //! number is a logarithm.
 
-use rand_distr::{Distribution, StandardNormal};
+use rand_distr::{Distribution as _, StandardNormal};
 
 use super::special::{ln_1p_squared, ln_gamma, normal_quantile};
 use super::{
-    LN_SQRT_2PI, Prior, Support, beta, gamma, impossible, positive,
-    quantile_of,
+    Distribution, LN_SQRT_2PI, Prior, Support, beta, gamma, impossible,
+    positive, quantile_of,
 };
 use crate::scalar::{Kind, Real, polynomial};
 use crate::seed::Rng;
@@ -22,7 +22,7 @@ use crate::seed::Rng;
 /// (1 + d^2 / freedom)^(-(freedom + 1)/2).
 ///
 /// ```
-/// use couloir::prior::{Prior, StudentT};
+/// use couloir::prior::{Distribution, Prior, StudentT};
 /// use couloir::scalar::{Plain, Real};
 /// let prior = StudentT::<Plain>::new(3.0, 0.0, 1.0);
 /// assert!((prior.log_density(Real::new(0.0)).value() + 1.0008889).abs() < 1e-7);
@@ -60,7 +60,7 @@ impl<K: Kind> StudentT<K> {
     }
 }
 
-impl<K: Kind> Prior<K> for StudentT<K> {
+impl<K: Kind> Distribution<K> for StudentT<K> {
     #[inline]
     fn log_density(&self, x: Real<K>) -> Real<K> {
         if !x.value().is_finite() || self.values().is_none() {
@@ -73,6 +73,19 @@ impl<K: Kind> Prior<K> for StudentT<K> {
             - 0.5 * (self.freedom + 1.0) * ln_1p_squared(ratio)
     }
 
+    fn draw(&self, rng: &mut Rng) -> Option<f64> {
+        let (freedom, location, scale) = self.values()?;
+        let z: f64 = StandardNormal.sample(rng);
+        let half_ln_chi2_over_freedom =
+            0.5 * (gamma::ln_draw(0.5 * freedom, rng)? - (0.5 * freedom).ln());
+        // In one exponential, so that no factor over- or underflows alone.
+        let size = (z.abs().ln() - half_ln_chi2_over_freedom).exp();
+        let x = location + scale * size.min(f64::MAX).copysign(z);
+        Some(self.support().nearest(x))
+    }
+}
+
+impl<K: Kind> Prior<K> for StudentT<K> {
     fn support(&self) -> Support<K> {
         Support::Line
     }
@@ -86,17 +99,6 @@ impl<K: Kind> Prior<K> for StudentT<K> {
         quantile_of(&self.support(), p, |p| {
             location + scale * standard_quantile(freedom, p)
         })
-    }
-
-    fn draw(&self, rng: &mut Rng) -> Option<f64> {
-        let (freedom, location, scale) = self.values()?;
-        let z: f64 = StandardNormal.sample(rng);
-        let half_ln_chi2_over_freedom =
-            0.5 * (gamma::ln_draw(0.5 * freedom, rng)? - (0.5 * freedom).ln());
-        // In one exponential, so that no factor over- or underflows alone.
-        let size = (z.abs().ln() - half_ln_chi2_over_freedom).exp();
-        let x = location + scale * size.min(f64::MAX).copysign(z);
-        Some(self.support().nearest(x))
     }
 }
 

@@ -13,6 +13,8 @@ pub enum Support<K: Kind> {
     Line,
     /// Above a bound; z = ln(x - low).
     Above(Real<K>),
+    /// Below a bound; z = -ln(high - x).
+    Below(Real<K>),
     /// Between two bounds; z = logit((x - low)/(high - low)).
     Between(Real<K>, Real<K>),
 }
@@ -24,6 +26,7 @@ impl<K: Kind> Support<K> {
         match *self {
             Self::Line => x.is_finite(),
             Self::Above(low) => x > low.value() && x.is_finite(),
+            Self::Below(high) => x < high.value() && x.is_finite(),
             Self::Between(low, high) => x > low.value() && x < high.value(),
         }
     }
@@ -43,6 +46,7 @@ impl<K: Kind> Support<K> {
         match *self {
             Self::Line => (z, Real::new(0.0)),
             Self::Above(low) => (low + z.exp(), z),
+            Self::Below(high) => (high - (-z).exp(), -z),
             Self::Between(low, high) => between(z, low, high),
         }
     }
@@ -52,19 +56,66 @@ impl<K: Kind> Support<K> {
         match *self {
             Self::Line => x,
             Self::Above(low) => (x - low.value()).ln(),
+            Self::Below(high) => -(high.value() - x).ln(),
             Self::Between(low, high) => {
                 (x - low.value()).ln() - (high.value() - x).ln()
             }
         }
     }
 
-    /// The two ends.
-    pub(super) fn ends(&self) -> (f64, f64) {
+    /// The two ends; infinite where there is none.
+    pub fn ends(&self) -> (f64, f64) {
+        let (low, high) = self.bounds();
+        (
+            low.map_or(f64::NEG_INFINITY, Real::value),
+            high.map_or(f64::INFINITY, Real::value),
+        )
+    }
+
+    /// The lower and the upper bound, where there is one.
+    pub(super) fn bounds(&self) -> (Option<Real<K>>, Option<Real<K>>) {
         match *self {
-            Self::Line => (f64::NEG_INFINITY, f64::INFINITY),
-            Self::Above(low) => (low.value(), f64::INFINITY),
-            Self::Between(low, high) => (low.value(), high.value()),
+            Self::Line => (None, None),
+            Self::Above(low) => (Some(low), None),
+            Self::Below(high) => (None, Some(high)),
+            Self::Between(low, high) => (Some(low), Some(high)),
         }
+    }
+
+    /// Between two bounds, where there are such.
+    pub(super) fn within(low: Option<Real<K>>, high: Option<Real<K>>) -> Self {
+        match (low, high) {
+            (None, None) => Self::Line,
+            (Some(low), None) => Self::Above(low),
+            (None, Some(high)) => Self::Below(high),
+            (Some(low), Some(high)) => Self::Between(low, high),
+        }
+    }
+
+    /// The part of it that lies between two bounds.
+    pub(super) fn cut(
+        &self,
+        low: Option<Real<K>>,
+        high: Option<Real<K>>,
+    ) -> Self {
+        let own = self.bounds();
+        let low = match (own.0, low) {
+            (Some(a), Some(b)) => Some(a.max(b)),
+            (a, b) => a.or(b),
+        };
+        let high = match (own.1, high) {
+            (Some(a), Some(b)) => Some(a.min(b)),
+            (a, b) => a.or(b),
+        };
+        Self::within(low, high)
+    }
+
+    /// All from the lower of two lower bounds to the higher of two upper ones.
+    pub(super) fn joined(&self, other: &Self) -> Self {
+        let (own, theirs) = (self.bounds(), other.bounds());
+        let low = own.0.zip(theirs.0).map(|(a, b)| a.min(b));
+        let high = own.1.zip(theirs.1).map(|(a, b)| a.max(b));
+        Self::within(low, high)
     }
 
     /// The number nearest to `x` that lies strictly inside, where there is

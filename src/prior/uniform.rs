@@ -1,15 +1,18 @@
 //! The uniform distribution.
 
-use rand_distr::{Distribution, Open01};
+use rand_distr::{Distribution as _, Open01};
 
-use super::{Prior, Support, impossible, positive, quantile_of};
+use super::{
+    Cumulative, Distribution, Prior, Support, impossible, positive,
+    quantile_of,
+};
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 
 /// Uniform(low, high), for low < x < high: p(x) = 1 / (high - low).
 ///
 /// ```
-/// use couloir::prior::{Prior, Uniform};
+/// use couloir::prior::{Distribution, Prior, Uniform};
 /// use couloir::scalar::{Plain, Real};
 /// let prior = Uniform::<Plain>::new(1.0, 3.0);
 /// assert_eq!(prior.log_density(Real::new(1.5)).value(), -(2.0_f64.ln()));
@@ -35,7 +38,7 @@ impl<K: Kind> Uniform<K> {
     }
 }
 
-impl<K: Kind> Prior<K> for Uniform<K> {
+impl<K: Kind> Distribution<K> for Uniform<K> {
     #[inline]
     fn log_density(&self, x: Real<K>) -> Real<K> {
         let width = self.high - self.low;
@@ -46,6 +49,16 @@ impl<K: Kind> Prior<K> for Uniform<K> {
         }
     }
 
+    fn draw(&self, rng: &mut Rng) -> Option<f64> {
+        let (low, width) = self.values()?;
+        let u: f64 = Open01.sample(rng);
+        let x = self.support().nearest(low + u * width);
+        // There may be no number between the two ends.
+        self.support().contains(x).then_some(x)
+    }
+}
+
+impl<K: Kind> Prior<K> for Uniform<K> {
     fn support(&self) -> Support<K> {
         Support::Between(self.low, self.high)
     }
@@ -58,12 +71,14 @@ impl<K: Kind> Prior<K> for Uniform<K> {
         let (low, width) = self.values()?;
         quantile_of(&self.support(), p, |p| low + p * width)
     }
+}
 
-    fn draw(&self, rng: &mut Rng) -> Option<f64> {
-        let (low, width) = self.values()?;
-        let u: f64 = Open01.sample(rng);
-        let x = self.support().nearest(low + u * width);
-        // There may be no number between the two ends.
-        self.support().contains(x).then_some(x)
+impl<K: Kind> Cumulative<K> for Uniform<K> {
+    fn log_below(&self, x: Real<K>) -> Real<K> {
+        ((x - self.low) / (self.high - self.low)).ln()
+    }
+
+    fn log_above(&self, x: Real<K>) -> Real<K> {
+        ((self.high - x) / (self.high - self.low)).ln()
     }
 }

@@ -21,6 +21,8 @@ pub trait Kind: Copy + Debug + Default + Send + Sync + 'static {
     fn constant(value: f64) -> Self::Repr;
     /// A number that is the coordinate along `direction`.
     fn variable(value: f64, direction: usize) -> Self::Repr;
+    /// A number of given derivatives, as many as the kind carries.
+    fn assemble(value: f64, partials: &[f64]) -> Self::Repr;
     /// The value of a number.
     fn value(x: &Self::Repr) -> f64;
     /// Its derivative along `direction`; 0 outside the kind's directions.
@@ -71,6 +73,10 @@ impl Kind for Plain {
         value
     }
     #[inline(always)]
+    fn assemble(value: f64, _: &[f64]) -> f64 {
+        value
+    }
+    #[inline(always)]
     fn value(x: &f64) -> f64 {
         *x
     }
@@ -117,6 +123,14 @@ impl<const N: usize> Kind for Grad<N> {
         let mut partials = [0.0; N];
         if let Some(slot) = partials.get_mut(direction) {
             *slot = 1.0;
+        }
+        Dual { value, partials }
+    }
+    #[inline(always)]
+    fn assemble(value: f64, given: &[f64]) -> Dual<N> {
+        let mut partials = [0.0; N];
+        for (slot, partial) in partials.iter_mut().zip(given) {
+            *slot = *partial;
         }
         Dual { value, partials }
     }

@@ -48,6 +48,19 @@ impl<K: Kind> Real<K> {
         Self(K::variable(value, direction))
     }
 
+    /// A number whose derivatives were found elsewhere: those along all
+    /// directions that the kind carries.
+    #[inline]
+    pub(crate) fn assembled(value: f64, partials: &[f64]) -> Self {
+        Self(K::assemble(value, partials))
+    }
+
+    /// The derivative along `direction`, of a kind that carries it.
+    #[inline(always)]
+    pub(crate) fn direction(self, direction: usize) -> f64 {
+        K::partial(&self.0, direction)
+    }
+
     /// The value, without derivatives.
     #[inline(always)]
     pub fn value(self) -> f64 {
@@ -253,6 +266,13 @@ impl<K: Kind> From<f64> for Real<K> {
     #[inline(always)]
     fn from(value: f64) -> Self {
         Self::new(value)
+    }
+}
+
+impl<K: Kind> From<&Self> for Real<K> {
+    #[inline(always)]
+    fn from(value: &Self) -> Self {
+        *value
     }
 }
 

@@ -11,7 +11,7 @@ use couloir::model::Assembled;
 use couloir::physics::GRAVITY;
 use couloir::physics::friction::Laws;
 use couloir::prelude::*;
-use couloir::prior::{Cauchy, Normal, Prior, Support};
+use couloir::prior::{Cauchy, Distribution, Normal, Prior, Support};
 use couloir::seed::Rng;
 use couloir::{io, noise};
 use serde_json::Value;
@@ -101,11 +101,17 @@ impl<K: Kind> Factor<K> {
     }
 }
 
-impl<K: Kind> Prior<K> for Factor<K> {
+impl<K: Kind> Distribution<K> for Factor<K> {
     fn log_density(&self, _: Real<K>) -> Real<K> {
         self.log
     }
 
+    fn draw(&self, _: &mut Rng) -> Option<f64> {
+        None
+    }
+}
+
+impl<K: Kind> Prior<K> for Factor<K> {
     fn support(&self) -> Support<K> {
         Support::Line
     }
@@ -115,10 +121,6 @@ impl<K: Kind> Prior<K> for Factor<K> {
     }
 
     fn quantile(&self, _: f64) -> Option<f64> {
-        None
-    }
-
-    fn draw(&self, _: &mut Rng) -> Option<f64> {
         None
     }
 }

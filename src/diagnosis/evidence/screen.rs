@@ -15,7 +15,7 @@ use crate::error::Result;
 use crate::infer::{HeldGrid, HeldPlace};
 use crate::mechanism::{Mechanism, Unknown};
 use crate::model::{Information, Posterior};
-use crate::prior::{AnyPrior, Prior};
+use crate::prior::{AnyPrior, Distribution, Prior};
 use crate::scalar::{Grad, Plain, Real};
 
 /// The quantiles of its prior between which an amplitude starts.
