@@ -1,9 +1,12 @@
 //! `couloir calibrate`: a friction law with its uncertainty.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use serde_json::json;
 
 use super::answer::{Answer, Strict};
+use super::format::Formats;
 use super::progress::Told;
 use super::results::Output;
 use super::study::Read;
@@ -13,6 +16,7 @@ use crate::averaged::{Open, calibrate_open};
 use crate::calibrate::Calibration;
 use crate::error::Result;
 use crate::infer::{Suited, suited};
+use crate::model::Assembled;
 use crate::physics::friction::Laws;
 use crate::report::{
     PROGRAM, calibration_json, in_words, noises, page, picture, table,
@@ -40,6 +44,8 @@ pub(super) struct Arguments {
     strict: Strict,
     #[command(flatten)]
     output: Output,
+    #[command(flatten)]
+    formats: Formats,
 }
 
 fn with_draws(name: &str) -> Result<String, String> {
@@ -47,36 +53,52 @@ fn with_draws(name: &str) -> Result<String, String> {
     backend_giving(name, purpose, |gives| gives.draws)
 }
 
-/// What a calibration writes.
-const FILES: [&str; 3] = ["report.html", "calibration.json", "draws.csv"];
+/// What a calibration writes in any case.
+const FILES: [&str; 2] = ["report.html", "calibration.json"];
+
+/// A calibration with the model that it is of.
+struct Found {
+    found: Calibration,
+    model: Assembled,
+}
 
 impl Arguments {
     pub(super) fn run(&self, laws: &Laws) -> Result<Answer> {
         let subject =
             Subject { thin: self.thin.clone(), ..self.subject.clone() };
-        let results = self.output.ready(&FILES, subject.paths())?;
+        let names = [&FILES[..], &self.formats.names()].concat();
+        let results = self.output.ready(&names, subject.paths())?;
         let read = subject.read(laws)?;
         // Summed before the work, as they were read.
-        let inputs = read.inputs.clone();
-        let found = self.found(read)?;
+        let inputs = json!(read.inputs);
+        let Found { found, model } = self.found(read)?;
+        let data = self.formats.data(&found, &model, &inputs);
         let mut json = calibration_json(&found.report);
-        json["inputs"] = json!(inputs);
+        json["inputs"] = inputs;
         json["program"] = PROGRAM.into();
+        if let Ok(Some(left_out)) = data.as_ref().map(|d| &d.left_out) {
+            json["loo"] = left_out.json();
+        }
         let json = pretty(&json);
-        let wrote = results.write(|| {
-            let draws = found.draws.to_csv();
-            let texts = [page(&found.report), json.clone(), draws];
-            Ok(FILES.into_iter().zip(texts).collect())
+        let wrote = data.and_then(|data| {
+            results.write(|| {
+                let texts = [page(&found.report), json.clone()];
+                let texts = texts.map(String::into_bytes);
+                let names = FILES.into_iter().map(PathBuf::from);
+                let mut files: Vec<_> = names.zip(texts).collect();
+                files.extend(self.formats.files(&found, &data)?);
+                Ok(files)
+            })
         });
         let text = match self.output.json {
             true => json,
-            false => tell(&found) + &results.told(&wrote, &FILES, width()),
+            false => tell(&found) + &results.told(&wrote, &names, width()),
         };
         let answer = self.strict.answer(text, &found.report.doubts);
         Ok(answer.after(wrote))
     }
 
-    fn found(&self, read: Read) -> Result<Calibration> {
+    fn found(&self, read: Read) -> Result<Found> {
         let Read { model, infers_noise, notes, warnings, .. } = read;
         let (backend, why) = match &self.backend {
             Some(name) => (self.work.backend(name)?, None),
@@ -94,7 +116,7 @@ impl Arguments {
         found.report.backend_why = why;
         found.report.notes = notes;
         found.report.warnings.splice(..0, warnings);
-        Ok(found)
+        Ok(Found { found, model })
     }
 }
 

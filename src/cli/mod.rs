@@ -9,6 +9,7 @@ mod calibrate;
 mod challenge;
 mod compare;
 mod diagnose;
+mod format;
 #[cfg(feature = "import")]
 mod import;
 mod new;

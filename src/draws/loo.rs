@@ -39,19 +39,36 @@ pub struct Loo {
 /// assert!((found.elpd + 2.0).abs() < 1e-12);
 /// assert!(found.p_loo.abs() < 1e-12);
 /// ```
-pub fn loo(log_likelihood: &[Vec<f64>]) -> Option<Loo> {
-    let observations = log_likelihood.first()?.len();
-    let ragged = log_likelihood.iter().any(|row| row.len() != observations);
+pub fn loo(log_likelihood: &[impl AsRef<[f64]>]) -> Option<Loo> {
+    loo_of_chains(log_likelihood, 1.0)
+}
+
+/// The same from draws that depend on each other, of which each is worth
+/// `efficiency` independent ones (see
+/// [`relative_efficiency`](super::relative_efficiency)).
+///
+/// ```
+/// use couloir::draws::{loo, loo_of_chains};
+/// let draw = |i: i32| vec![-0.5 - (f64::from(i) * 0.7).sin().powi(4)];
+/// let table: Vec<_> = (0..500).map(draw).collect();
+/// assert_eq!(loo_of_chains(&table, 1.0), loo(&table));
+/// assert_ne!(loo_of_chains(&table, 0.3), loo(&table));
+/// ```
+pub fn loo_of_chains(
+    log_likelihood: &[impl AsRef<[f64]>],
+    efficiency: f64,
+) -> Option<Loo> {
+    let rows = || log_likelihood.iter().map(AsRef::as_ref);
+    let observations = rows().next()?.len();
+    let ragged = rows().any(|row| row.len() != observations);
     if observations == 0 || ragged {
         return None;
     }
-    let column = |i: usize| -> Vec<f64> {
-        log_likelihood.iter().map(|row| row[i]).collect()
-    };
+    let column = |i: usize| -> Vec<f64> { rows().map(|row| row[i]).collect() };
     let [mut pointwise, mut pareto_k] = [vec![], vec![]];
     let mut in_sample = 0.0;
     for observed in (0..observations).map(column) {
-        let (elpd, k) = left_out(&observed);
+        let (elpd, k) = left_out(&observed, efficiency);
         pointwise.push(elpd);
         pareto_k.push(k);
         in_sample += log_sum_exp(observed.iter().copied())
@@ -80,9 +97,9 @@ pub fn sum_and_error(parts: &[f64]) -> (f64, f64) {
 
 /// The log predictive density of one observation without it, and the shape
 /// of its weights.
-fn left_out(log_likelihood: &[f64]) -> (f64, f64) {
+fn left_out(log_likelihood: &[f64], efficiency: f64) -> (f64, f64) {
     let log_ratios: Vec<f64> = log_likelihood.iter().map(|l| -l).collect();
-    let (log_weights, k) = psis(&log_ratios);
+    let (log_weights, k) = psis_of_chains(&log_ratios, efficiency);
     let terms = log_weights.iter().zip(log_likelihood).map(|(w, l)| w + l);
     (log_sum_exp(terms), k)
 }
@@ -118,22 +135,40 @@ pub fn k_threshold(draws: usize) -> f64 {
 /// assert!((sum - 1.0).abs() < 1e-12);
 /// ```
 pub fn psis(log_ratios: &[f64]) -> (Vec<f64>, f64) {
+    psis_of_chains(log_ratios, 1.0)
+}
+
+/// The same for ratios that depend on each other, of which each is worth
+/// `efficiency` independent ones.
+///
+/// Neighbours in a chain are large together, so that a tail of the same
+/// number of them says less: it has min(S / 5, 3 sqrt(S / efficiency)) ratios
+/// then (Vehtari and others 2024, appendix H).
+///
+/// ```
+/// use couloir::draws::{psis, psis_of_chains};
+/// let ratios: Vec<_> = (1..2000).map(|i| -0.5 * f64::from(i).ln()).collect();
+/// assert_eq!(psis_of_chains(&ratios, 1.0), psis(&ratios));
+/// assert_ne!(psis_of_chains(&ratios, 0.25), psis(&ratios));
+/// ```
+pub fn psis_of_chains(log_ratios: &[f64], efficiency: f64) -> (Vec<f64>, f64) {
     let largest = log_ratios.iter().copied().fold(f64::NAN, f64::max);
     let broken = log_ratios.iter().any(|r| r.is_nan());
     if broken || !largest.is_finite() {
         return (vec![f64::NAN; log_ratios.len()], f64::NAN);
     }
     let mut logs: Vec<f64> = log_ratios.iter().map(|r| r - largest).collect();
-    let k = smooth_tail(&mut logs);
+    let k = smooth_tail(&mut logs, efficiency);
     let norm = log_sum_exp(logs.iter().copied());
     logs.iter_mut().for_each(|log| *log -= norm);
     (logs, k)
 }
 
 /// Smooths the tail of log ratios whose largest is 0, and gives its shape.
-fn smooth_tail(logs: &mut [f64]) -> f64 {
+fn smooth_tail(logs: &mut [f64], efficiency: f64) -> f64 {
     let draws = logs.len() as f64;
-    let tail = (0.2 * draws).min(3.0 * draws.sqrt()).ceil() as usize;
+    let tail = (0.2 * draws).min(3.0 * (draws / efficiency).sqrt());
+    let tail = tail.ceil() as usize;
     if tail < 5 {
         return f64::NAN;
     }
