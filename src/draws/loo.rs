@@ -39,7 +39,7 @@ pub struct Loo {
 /// assert!((found.elpd + 2.0).abs() < 1e-12);
 /// assert!(found.p_loo.abs() < 1e-12);
 /// ```
-pub fn loo(log_likelihood: &[impl AsRef<[f64]>]) -> Option<Loo> {
+pub fn loo(log_likelihood: &[Vec<f64>]) -> Option<Loo> {
     loo_of_chains(log_likelihood, 1.0)
 }
 
@@ -122,8 +122,9 @@ pub fn k_threshold(draws: usize) -> f64 {
 ///
 /// k is NaN, and the weights are not smoothed, where the tail has fewer than
 /// five ratios, that is below 21 draws. It is minus infinity where all of the
-/// tail is equal, as for constant weights. NaN or infinite ratios make
-/// everything NaN.
+/// tail is equal, as for constant weights, and infinity, without smoothing,
+/// where fewer than five are above the rest, since so many are equal. NaN or
+/// infinite ratios make everything NaN.
 ///
 /// ```
 /// use couloir::draws::psis;
@@ -164,25 +165,37 @@ pub fn psis_of_chains(log_ratios: &[f64], efficiency: f64) -> (Vec<f64>, f64) {
     (logs, k)
 }
 
+/// The fewest ratios that a tail is fitted to.
+const LEAST: usize = 5;
+
 /// Smooths the tail of log ratios whose largest is 0, and gives its shape.
 fn smooth_tail(logs: &mut [f64], efficiency: f64) -> f64 {
     let draws = logs.len() as f64;
     let tail = (0.2 * draws).min(3.0 * (draws / efficiency).sqrt());
     let tail = tail.ceil() as usize;
-    if tail < 5 {
+    if tail < LEAST {
         return f64::NAN;
     }
     let mut order: Vec<usize> = (0..logs.len()).collect();
     order.sort_unstable_by(|a, b| logs[*a].total_cmp(&logs[*b]));
     let (body, tail) = order.split_at(logs.len() - tail);
-    let Some(cutoff) = body.last().map(|at| logs[*at].exp()) else {
+    let (Some(body), [least, .., most]) = (body.last(), tail) else {
         return f64::NAN;
     };
-    let excess: Vec<f64> = tail.iter().map(|at| logs[*at].exp()).collect();
-    if excess.first() == excess.last() {
+    if logs[*least] == logs[*most] {
         return f64::NEG_INFINITY;
     }
-    let excess: Vec<f64> = excess.iter().map(|r| r - cutoff).collect();
+    // What equals the cut-off does not exceed it: of equal ratios, all are in
+    // the tail or none, whichever way they were sorted.
+    let cutoff = logs[*body];
+    let ties = tail.partition_point(|at| logs[*at] <= cutoff);
+    let tail = &tail[ties..];
+    if tail.len() < LEAST {
+        return f64::INFINITY;
+    }
+    let cutoff = cutoff.exp();
+    let excess: Vec<f64> =
+        tail.iter().map(|at| logs[*at].exp() - cutoff).collect();
     let Some((k, scale)) = generalised_pareto(&excess) else {
         return f64::NAN;
     };
@@ -371,6 +384,21 @@ mod tests {
         assert_eq!(k, f64::NEG_INFINITY);
         assert!(k < k_threshold(100));
         weights.iter().for_each(|w| close(*w, -100.0_f64.ln(), 1e-12));
+    }
+
+    #[test]
+    fn equal_ratios_have_equal_weights() {
+        // The tail of 1000 begins at the 905th: within the draws from 900 to
+        // 909, which a chain that stood still made equal.
+        let ratio = |i: u32| f64::from(i / 10).powi(2) / 1e3;
+        let ratios: Vec<f64> = (0..1000).map(ratio).collect();
+        let (weights, k) = psis(&ratios);
+        assert!(k.is_finite());
+        let stood = &weights[900..910];
+        assert!(stood.iter().all(|w| *w == stood[0]), "{stood:?}");
+        // Two values alone are no tail.
+        let ratios = [vec![0.0; 900], vec![1.0; 2]].concat();
+        assert_eq!(psis(&ratios).1, f64::INFINITY);
     }
 
     #[test]
