@@ -39,6 +39,16 @@
 //! # Ok::<(), Error>(())
 //! ```
 //!
+//! # Where one number is a choice
+//!
+//! `log_likelihood` has ln of the density of each value given those before it,
+//! which for independent errors is its own. ArviZ's `loo` then leaves out one
+//! such factor at a time (see [`elpd`](crate::elpd)). A parameter in a list is
+//! one variable with a dimension (`phi[1]`, `phi[2]`: `phi` along
+//! `phi_dim_0`), and one of each event has the dimension `event`. A calibration
+//! averaged over noises has draws of no single model: of it there is the group
+//! `posterior` alone.
+//!
 //! # Draws that are not of chains
 //!
 //! Every backend that gives draws gives even ones: `importance`,
