@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use couloir::draws::{Draws, quantile};
-use couloir::export::{InferenceData, Scope, gather};
+use couloir::export::{InferenceData, Scope, gather, of_draws};
 use couloir::prelude::*;
 
 model! {
@@ -109,6 +109,16 @@ fn more_numbers_than_allowed_are_thinned_by_whole_draws() {
     assert!((last - log_normal(SEEN[0], 109.0)).abs() < 1e-9);
     assert_eq!(data.variable("posterior", "centre").unwrap().shape, [2, 10]);
     assert_eq!(data.left_out.unwrap().draws, 8);
+}
+
+#[test]
+fn a_parameter_is_not_called_as_a_dimension() {
+    let names = || vec!["draw".to_owned()];
+    let mut draws = Draws::new(names(), names()).unwrap();
+    assert!(of_draws(&draws, &[]).unwrap_err().is_inference());
+    draws.push_chain(vec![1.0], None).unwrap();
+    let error = of_draws(&draws, &[]).unwrap_err();
+    assert!(error.is_input() && error.to_string().contains("write csv"));
 }
 
 #[test]

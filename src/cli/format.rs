@@ -117,10 +117,11 @@ impl Formats {
         inputs: &Value,
     ) -> Result<InferenceData> {
         let draws = &found.draws;
-        let averaged = !found.report.noises.is_empty();
-        let data = match averaged || !self.asked().any(Format::has_data) {
-            true => of_draws(draws, &[])?,
-            false => {
+        let asked = self.asked().any(Format::has_data);
+        let data = match (asked, found.report.noises.is_empty()) {
+            (false, _) => InferenceData::default(),
+            (true, false) => of_draws(draws, &[])?,
+            (true, true) => {
                 let posterior = Posterior::new(model)?;
                 let seed = Seed::new(found.report.seed).called("export");
                 gather(&posterior, draws, &Scope::default(), seed)?

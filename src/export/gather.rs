@@ -57,10 +57,17 @@ impl Scope {
 /// The posterior draws alone, as the group `posterior`.
 ///
 /// # Errors
-/// Where there is no draw.
+/// Where there is no draw, or a parameter is called as a dimension is.
 pub fn of_draws(draws: &Draws, events: &[String]) -> Result<InferenceData> {
     if draws.total() == 0 {
         return Err(Error::inference("there is no draw to be written"));
+    }
+    let taken = |name: &&String| ["chain", "draw"].contains(&name.as_str());
+    if let Some(name) = draws.names().iter().find(taken) {
+        return Err(Error::input(format!(
+            "a parameter is called {name}, as is a dimension of its draws; \
+             expected another name: rename it, or write csv"
+        )));
     }
     let rows: Vec<&[f64]> = draws.rows().collect();
     let places = Places::every(draws, 1);
