@@ -14,7 +14,10 @@
 
 use rayon::prelude::*;
 
-use crate::draws::{self, Draws, Lfo, Loo, k_threshold, loo, sum_and_error};
+use crate::draws::{
+    self, Draws, Lfo, Loo, k_threshold, loo_of_chains, relative_efficiency,
+    sum_and_error,
+};
 use crate::error::{Error, Result};
 use crate::infer::{Backend, Progress, Quiet, infer};
 use crate::model::{Assembled, Point, Posterior};
@@ -76,7 +79,12 @@ pub fn pointwise(
 /// # Errors
 /// As [`pointwise`]; a model without data.
 pub fn leave_one_out(posterior: &Posterior<'_>, draws: &Draws) -> Result<Loo> {
-    loo(&pointwise(posterior, draws)?)
+    let table = pointwise(posterior, draws)?;
+    // A draw of fewer is worth more, but not more than an independent one.
+    let each = relative_efficiency(draws);
+    let thinned = draws.total() as f64 / table.len() as f64;
+    let efficiency = (each * thinned).min(each.max(1.0));
+    loo_of_chains(&table, efficiency)
         .ok_or_else(|| Error::inference("the model has no data to leave out"))
 }
 

@@ -111,6 +111,7 @@ pub mod diagnosis;
 pub mod draws;
 pub mod elpd;
 pub mod error;
+pub mod export;
 #[cfg(feature = "import")]
 pub mod import;
 pub mod infer;

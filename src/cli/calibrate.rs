@@ -1,8 +1,11 @@
 //! `couloir calibrate`: a friction law with its uncertainty.
 
+use std::path::PathBuf;
+
 use clap::Args;
 
 use super::answer::{Answer, Strict, origin, pretty, wrapped};
+use super::format::Formats;
 use super::progress::Told;
 use super::results::Output;
 use super::study::Read;
@@ -12,6 +15,7 @@ use crate::averaged::{Open, calibrate_open};
 use crate::calibrate::Calibration;
 use crate::error::Result;
 use crate::infer::{Suited, suited};
+use crate::model::Assembled;
 use crate::physics::friction::Laws;
 use crate::report::{
     calibration_json, in_words, noises, page, picture, table,
@@ -43,6 +47,8 @@ pub(super) struct Arguments {
     strict: Strict,
     #[command(flatten)]
     output: Output,
+    #[command(flatten)]
+    formats: Formats,
 }
 
 fn with_draws(name: &str) -> Result<String, String> {
@@ -54,40 +60,56 @@ fn with_draws(name: &str) -> Result<String, String> {
 const QUICK: &str =
     "This is a quick look, to be made sure of without --quick.";
 
-/// What a calibration writes.
-const FILES: [&str; 3] = ["report.html", "calibration.json", "draws.csv"];
+/// What a calibration writes in any case.
+const FILES: [&str; 2] = ["report.html", "calibration.json"];
+
+/// A calibration with the model that it is of.
+struct Found {
+    found: Calibration,
+    model: Assembled,
+}
 
 impl Arguments {
     pub(super) fn run(&self, laws: &Laws, told: &Told) -> Result<Answer> {
         let thin = self.thin.quickly(self.quick);
         let subject = Subject { thin, ..self.subject.clone() };
-        let results = self.output.ready(&FILES, subject.paths())?;
+        let names = [&FILES[..], &self.formats.names()].concat();
+        let results = self.output.ready(&names, subject.paths())?;
         let mut read = subject.read(laws)?;
         if self.quick {
             read.said.note([QUICK.to_owned()]);
         }
         // Summed before the work, as they were read.
         let origin = origin(subject.inputs()?);
-        let mut found = self.found(read, told)?;
-        found.report.origin = origin;
+        let Found { mut found, model } = self.found(read, told)?;
         told.finish();
+        found.report.origin = origin;
+        let data = self.formats.data(&found, &model);
         let mut json = calibration_json(&found.report);
         json["quick"] = self.quick.into();
+        if let Ok(Some(left_out)) = data.as_ref().map(|d| &d.left_out) {
+            json["loo"] = left_out.json();
+        }
         let json = pretty(&json);
-        let wrote = results.write(|| {
-            let draws = found.draws.to_csv();
-            let texts = [page(&found.report), json.clone(), draws];
-            Ok(FILES.into_iter().zip(texts).collect())
+        let wrote = data.and_then(|data| {
+            results.write(|| {
+                let texts = [page(&found.report), json.clone()];
+                let texts = texts.map(String::into_bytes);
+                let names = FILES.into_iter().map(PathBuf::from);
+                let mut files: Vec<_> = names.zip(texts).collect();
+                files.extend(self.formats.files(&found, &data)?);
+                Ok(files)
+            })
         });
         let text = match self.output.json {
             true => json,
-            false => tell(&found) + &results.told(&wrote, &FILES, width()),
+            false => tell(&found) + &results.told(&wrote, &names, width()),
         };
         let answer = self.strict.answer(text, &found.report.doubts);
         Ok(answer.after(wrote))
     }
 
-    fn found(&self, read: Read, told: &Told) -> Result<Calibration> {
+    fn found(&self, read: Read, told: &Told) -> Result<Found> {
         let Read { model, infers_noise, said } = read;
         let work = self.work.quickly(self.quick);
         let (backend, why) = match &self.backend {
@@ -106,7 +128,7 @@ impl Arguments {
         found.report.backend_why = why;
         found.report.notes = said.notes;
         found.report.warnings.splice(..0, said.warnings);
-        Ok(found)
+        Ok(Found { found, model })
     }
 }
 

@@ -11,6 +11,7 @@ mod compare;
 mod completions;
 mod diagnose;
 mod examples;
+mod format;
 #[cfg(feature = "import")]
 mod import;
 mod man;

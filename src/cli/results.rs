@@ -67,9 +67,9 @@ impl<'a> Results<'a> {
 
     /// Writes the files, where there is a folder for them. An error is to be
     /// told behind the answer, which would be lost otherwise.
-    pub(super) fn write<N: AsRef<Path>>(
+    pub(super) fn write<N: AsRef<Path>, B: AsRef<[u8]>>(
         &self,
-        files: impl FnOnce() -> Result<Vec<(N, String)>>,
+        files: impl FnOnce() -> Result<Vec<(N, B)>>,
     ) -> Result<()> {
         match self.folder {
             None => Ok(()),

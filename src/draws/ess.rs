@@ -10,6 +10,7 @@
 
 use statrs::distribution::{Beta, ContinuousCDF, Normal};
 
+use super::Draws;
 use super::quantile::{quantile, sorted};
 use super::rhat::{rank_normalised, split};
 use super::spectrum::{Autocovariances, mean, variance};
@@ -47,6 +48,33 @@ pub fn ess_mean(chains: &[Vec<f64>]) -> f64 {
 /// The effective sample size for the quantile at probability `p`.
 pub fn ess_quantile(chains: &[Vec<f64>], p: f64) -> f64 {
     ess_below(chains, quantile(&sorted(chains.concat()), p))
+}
+
+/// How many independent draws each draw is worth: the mean over parameters of
+/// the effective size for the mean, over the number of draws. 1 where no
+/// parameter has one.
+///
+/// It says how long the tail of importance weights is, by its square root
+/// (see [`psis_of_chains`](super::psis_of_chains)); one number for all
+/// observations is what ArviZ takes, too.
+///
+/// ```
+/// use couloir::draws::{Draws, relative_efficiency};
+/// let names = || vec!["mu".to_owned()];
+/// let mut draws = Draws::new(names(), names())?;
+/// // Each value stands ten times: a draw is worth a tenth.
+/// let row = |i: u64| ((i / 10 * 7919) % 1009) as f64;
+/// draws.push_chain((0..10_000).map(row).collect(), None)?;
+/// assert!((relative_efficiency(&draws) - 0.1).abs() < 0.05);
+/// # Ok::<(), couloir::Error>(())
+/// ```
+pub fn relative_efficiency(draws: &Draws) -> f64 {
+    let sizes = (0..draws.dimension()).map(|i| ess_mean(&draws.column(i)));
+    let sizes: Vec<f64> = sizes.filter(|size| size.is_finite()).collect();
+    match sizes.len() {
+        0 => 1.0,
+        _ => mean(&sizes) / draws.total() as f64,
+    }
 }
 
 /// The Monte Carlo standard error of the mean, in the parameter's unit.

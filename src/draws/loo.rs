@@ -40,18 +40,35 @@ pub struct Loo {
 /// assert!(found.p_loo.abs() < 1e-12);
 /// ```
 pub fn loo(log_likelihood: &[Vec<f64>]) -> Option<Loo> {
-    let observations = log_likelihood.first()?.len();
-    let ragged = log_likelihood.iter().any(|row| row.len() != observations);
+    loo_of_chains(log_likelihood, 1.0)
+}
+
+/// The same from draws that depend on each other, of which each is worth
+/// `efficiency` independent ones (see
+/// [`relative_efficiency`](super::relative_efficiency)).
+///
+/// ```
+/// use couloir::draws::{loo, loo_of_chains};
+/// let draw = |i: i32| vec![-0.5 - (f64::from(i) * 0.7).sin().powi(4)];
+/// let table: Vec<_> = (0..500).map(draw).collect();
+/// assert_eq!(loo_of_chains(&table, 1.0), loo(&table));
+/// assert_ne!(loo_of_chains(&table, 0.3), loo(&table));
+/// ```
+pub fn loo_of_chains(
+    log_likelihood: &[impl AsRef<[f64]>],
+    efficiency: f64,
+) -> Option<Loo> {
+    let rows = || log_likelihood.iter().map(AsRef::as_ref);
+    let observations = rows().next()?.len();
+    let ragged = rows().any(|row| row.len() != observations);
     if observations == 0 || ragged {
         return None;
     }
-    let column = |i: usize| -> Vec<f64> {
-        log_likelihood.iter().map(|row| row[i]).collect()
-    };
+    let column = |i: usize| -> Vec<f64> { rows().map(|row| row[i]).collect() };
     let [mut pointwise, mut pareto_k] = [vec![], vec![]];
     let mut in_sample = 0.0;
     for observed in (0..observations).map(column) {
-        let (elpd, k) = left_out(&observed);
+        let (elpd, k) = left_out(&observed, efficiency);
         pointwise.push(elpd);
         pareto_k.push(k);
         in_sample += log_sum_exp(observed.iter().copied())
@@ -80,9 +97,9 @@ pub fn sum_and_error(parts: &[f64]) -> (f64, f64) {
 
 /// The log predictive density of one observation without it, and the shape
 /// of its weights.
-fn left_out(log_likelihood: &[f64]) -> (f64, f64) {
+fn left_out(log_likelihood: &[f64], efficiency: f64) -> (f64, f64) {
     let log_ratios: Vec<f64> = log_likelihood.iter().map(|l| -l).collect();
-    let (log_weights, k) = psis(&log_ratios);
+    let (log_weights, k) = psis_of_chains(&log_ratios, efficiency);
     let terms = log_weights.iter().zip(log_likelihood).map(|(w, l)| w + l);
     (log_sum_exp(terms), k)
 }
@@ -105,8 +122,9 @@ pub fn k_threshold(draws: usize) -> f64 {
 ///
 /// k is NaN, and the weights are not smoothed, where the tail has fewer than
 /// five ratios, that is below 21 draws. It is minus infinity where all of the
-/// tail is equal, as for constant weights. NaN or infinite ratios make
-/// everything NaN.
+/// tail is equal, as for constant weights, and infinity, without smoothing,
+/// where fewer than five are above the rest, since so many are equal. NaN or
+/// infinite ratios make everything NaN.
 ///
 /// ```
 /// use couloir::draws::psis;
@@ -118,36 +136,66 @@ pub fn k_threshold(draws: usize) -> f64 {
 /// assert!((sum - 1.0).abs() < 1e-12);
 /// ```
 pub fn psis(log_ratios: &[f64]) -> (Vec<f64>, f64) {
+    psis_of_chains(log_ratios, 1.0)
+}
+
+/// The same for ratios that depend on each other, of which each is worth
+/// `efficiency` independent ones.
+///
+/// Neighbours in a chain are large together, so that a tail of the same
+/// number of them says less: it has min(S / 5, 3 sqrt(S / efficiency)) ratios
+/// then (Vehtari and others 2024, appendix H).
+///
+/// ```
+/// use couloir::draws::{psis, psis_of_chains};
+/// let ratios: Vec<_> = (1..2000).map(|i| -0.5 * f64::from(i).ln()).collect();
+/// assert_eq!(psis_of_chains(&ratios, 1.0), psis(&ratios));
+/// assert_ne!(psis_of_chains(&ratios, 0.25), psis(&ratios));
+/// ```
+pub fn psis_of_chains(log_ratios: &[f64], efficiency: f64) -> (Vec<f64>, f64) {
     let largest = log_ratios.iter().copied().fold(f64::NAN, f64::max);
     let broken = log_ratios.iter().any(|r| r.is_nan());
     if broken || !largest.is_finite() {
         return (vec![f64::NAN; log_ratios.len()], f64::NAN);
     }
     let mut logs: Vec<f64> = log_ratios.iter().map(|r| r - largest).collect();
-    let k = smooth_tail(&mut logs);
+    let k = smooth_tail(&mut logs, efficiency);
     let norm = log_sum_exp(logs.iter().copied());
     logs.iter_mut().for_each(|log| *log -= norm);
     (logs, k)
 }
 
+/// The fewest ratios that a tail is fitted to.
+const LEAST: usize = 5;
+
 /// Smooths the tail of log ratios whose largest is 0, and gives its shape.
-fn smooth_tail(logs: &mut [f64]) -> f64 {
+fn smooth_tail(logs: &mut [f64], efficiency: f64) -> f64 {
     let draws = logs.len() as f64;
-    let tail = (0.2 * draws).min(3.0 * draws.sqrt()).ceil() as usize;
-    if tail < 5 {
+    let tail = (0.2 * draws).min(3.0 * (draws / efficiency).sqrt());
+    let tail = tail.ceil() as usize;
+    if tail < LEAST {
         return f64::NAN;
     }
     let mut order: Vec<usize> = (0..logs.len()).collect();
     order.sort_unstable_by(|a, b| logs[*a].total_cmp(&logs[*b]));
     let (body, tail) = order.split_at(logs.len() - tail);
-    let Some(cutoff) = body.last().map(|at| logs[*at].exp()) else {
+    let (Some(body), [least, .., most]) = (body.last(), tail) else {
         return f64::NAN;
     };
-    let excess: Vec<f64> = tail.iter().map(|at| logs[*at].exp()).collect();
-    if excess.first() == excess.last() {
+    if logs[*least] == logs[*most] {
         return f64::NEG_INFINITY;
     }
-    let excess: Vec<f64> = excess.iter().map(|r| r - cutoff).collect();
+    // What equals the cut-off does not exceed it: of equal ratios, all are in
+    // the tail or none, whichever way they were sorted.
+    let cutoff = logs[*body];
+    let ties = tail.partition_point(|at| logs[*at] <= cutoff);
+    let tail = &tail[ties..];
+    if tail.len() < LEAST {
+        return f64::INFINITY;
+    }
+    let cutoff = cutoff.exp();
+    let excess: Vec<f64> =
+        tail.iter().map(|at| logs[*at].exp() - cutoff).collect();
     let Some((k, scale)) = generalised_pareto(&excess) else {
         return f64::NAN;
     };
@@ -336,6 +384,21 @@ mod tests {
         assert_eq!(k, f64::NEG_INFINITY);
         assert!(k < k_threshold(100));
         weights.iter().for_each(|w| close(*w, -100.0_f64.ln(), 1e-12));
+    }
+
+    #[test]
+    fn equal_ratios_have_equal_weights() {
+        // The tail of 1000 begins at the 905th: within the draws from 900 to
+        // 909, which a chain that stood still made equal.
+        let ratio = |i: u32| f64::from(i / 10).powi(2) / 1e3;
+        let ratios: Vec<f64> = (0..1000).map(ratio).collect();
+        let (weights, k) = psis(&ratios);
+        assert!(k.is_finite());
+        let stood = &weights[900..910];
+        assert!(stood.iter().all(|w| *w == stood[0]), "{stood:?}");
+        // Two values alone are no tail.
+        let ratios = [vec![0.0; 900], vec![1.0; 2]].concat();
+        assert_eq!(psis(&ratios).1, f64::INFINITY);
     }
 
     #[test]

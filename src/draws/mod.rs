@@ -43,6 +43,7 @@ mod summary;
 pub use array::Array;
 pub use ess::{
     ess_bulk, ess_mean, ess_quantile, ess_tail, mcse_mean, mcse_quantile,
+    relative_efficiency,
 };
 pub use kde::{Density, Support, bandwidth, density};
 pub use kolmogorov::{
@@ -50,7 +51,9 @@ pub use kolmogorov::{
 };
 pub use lfo::{Lfo, leave_future_out};
 pub(crate) use loo::log_sum_exp;
-pub use loo::{Loo, k_threshold, loo, psis, sum_and_error};
+pub use loo::{
+    Loo, k_threshold, loo, loo_of_chains, psis, psis_of_chains, sum_and_error,
+};
 pub(crate) use quantile::median;
 pub use quantile::quantile;
 pub use residual::{
@@ -212,6 +215,20 @@ impl Draws {
         Ok(few)
     }
 
+    /// Every `step`-th draw of each chain, from the first on.
+    ///
+    /// # Errors
+    /// Where there is no draw.
+    pub fn every(&self, step: usize) -> Result<Self> {
+        let mut some = Self::new(self.names.clone(), self.units.clone())?;
+        for (rows, acceptance) in self.chains.iter().zip(&self.acceptance) {
+            let rows = rows.chunks_exact(self.dimension());
+            let rows: Vec<_> = rows.step_by(step.max(1)).collect();
+            some.push_chain(rows.concat(), Some(*acceptance))?;
+        }
+        Ok(some)
+    }
+
     /// The mean of each parameter over all draws.
     pub fn mean(&self) -> Vec<f64> {
         let mut sums = vec![0.0; self.dimension()];
@@ -280,8 +297,12 @@ fn same_bits(a: &[f64], b: &[f64]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(same)
 }
 
-/// A field of a CSV file, quoted where RFC 4180 asks for it.
+/// A field of a CSV file, quoted where RFC 4180 asks for it. What a
+/// spreadsheet would take for a formula has an apostrophe before it, as OWASP
+/// advises ("CSV Injection").
 fn csv_field(text: &str) -> String {
+    let formula = text.starts_with(['=', '+', '-', '@', '\t', '\r']);
+    let text = &if formula { format!("'{text}") } else { text.to_owned() };
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {
@@ -386,6 +407,8 @@ mod tests {
         assert_eq!(draws.thinned(9).len(), 4);
         assert_eq!(draws.few(2).unwrap().column(0), [[3.0, 7.0]]);
         assert!(draws.few(0).is_err());
+        assert_eq!(draws.every(2).unwrap().column(0), [[1.0], [5.0]]);
+        assert_eq!(draws.every(0).unwrap().column(0), draws.column(0));
         assert!(draws.thinned(0).is_empty());
     }
 
@@ -411,6 +434,16 @@ mod tests {
         assert_eq!(lines[1], "0,0,1.0,2.0");
         assert_eq!(lines[4], "1,1,7.0,1e-300");
         assert_eq!(lines.len(), 5);
+    }
+
+    #[test]
+    fn a_name_is_no_formula() {
+        for name in ["=1+1", "+1", "-1", "@sum(a)", "\t=1"] {
+            let draws = Draws::new(vec![name.into()], vec!["1".into()]);
+            let text = draws.unwrap().to_csv();
+            assert_eq!(text, format!("chain,iteration,'{name}\n"));
+        }
+        assert_eq!(csv_field("a=1"), "a=1");
     }
 
     #[test]

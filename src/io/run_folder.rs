@@ -54,15 +54,15 @@ pub(crate) fn prepare_run(
 ///
 /// # Errors
 /// As [`prepare_run`]. The list still names all that is couloir's then.
-pub(crate) fn write_run<N: AsRef<Path>>(
+pub(crate) fn write_run<N: AsRef<Path>, B: AsRef<[u8]>>(
     folder: &Path,
-    files: &[(N, String)],
+    files: &[(N, B)],
 ) -> Result<()> {
     let old = read_list(folder)?;
     let new: Listed = files
         .iter()
-        .map(|(name, text)| {
-            let sum = BTreeSet::from([sha256(text.as_bytes())]);
+        .map(|(name, bytes)| {
+            let sum = BTreeSet::from([sha256(bytes.as_ref())]);
             (listed_name(name.as_ref()), sum)
         })
         .collect();

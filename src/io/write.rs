@@ -30,19 +30,20 @@ impl Drop for Draft {
 /// # Errors
 /// A system error that names the file and the machine's reason. Files whose
 /// turn to be renamed had not come are then left as they were.
-pub fn write_all<N: AsRef<Path>>(
+pub fn write_all<N: AsRef<Path>, B: AsRef<[u8]>>(
     folder: &Path,
-    files: &[(N, String)],
+    files: &[(N, B)],
 ) -> Result<()> {
     put_in_place(&drafts(folder, files)?)
 }
 
 /// The files under their temporary names, complete.
-pub(super) fn drafts<N: AsRef<Path>>(
+pub(super) fn drafts<N: AsRef<Path>, B: AsRef<[u8]>>(
     folder: &Path,
-    files: &[(N, String)],
+    files: &[(N, B)],
 ) -> Result<Vec<Draft>> {
-    let draft = |(name, text): &(N, String)| draft(folder.join(name), text);
+    let draft =
+        |(name, bytes): &(N, B)| draft(folder.join(name), bytes.as_ref());
     files.iter().map(draft).collect()
 }
 
@@ -62,7 +63,7 @@ pub(super) fn put_in_place(drafts: &[Draft]) -> Result<()> {
 pub(super) fn try_folder(folder: &Path) -> Result<()> {
     let new: Vec<&Path> =
         folder.ancestors().take_while(|path| !path.exists()).collect();
-    let tried = draft(folder.join("couloir"), "").map(drop);
+    let tried = draft(folder.join("couloir"), b"").map(drop);
     for made in new {
         // What could not be made is not there to be removed.
         let _ = fs::remove_dir(made);
@@ -75,7 +76,7 @@ pub(super) fn try_folder(folder: &Path) -> Result<()> {
     })
 }
 
-fn draft(target: PathBuf, text: &str) -> Result<Draft> {
+fn draft(target: PathBuf, bytes: &[u8]) -> Result<Draft> {
     let folder = target.parent().unwrap_or(Path::new(""));
     fs::create_dir_all(folder).map_err(|error| {
         failed(folder, "the folder could not be created", &error)
@@ -84,7 +85,7 @@ fn draft(target: PathBuf, text: &str) -> Result<Draft> {
     let hidden = format!(".{name}.{}.tmp", std::process::id());
     let draft = Draft { temporary: folder.join(hidden), target };
     let written = File::create(&draft.temporary).and_then(|mut file| {
-        file.write_all(text.as_bytes())?;
+        file.write_all(bytes)?;
         file.sync_all()
     });
     match written {
@@ -123,11 +124,11 @@ mod tests {
     #[test]
     fn files_are_written_and_others_stay() {
         let folder = fresh("stay").join("deep/er");
-        write_all(&folder, &[("a", "1".into()), ("b", "2".into())]).unwrap();
-        write_all(&folder, &[("a", "3".into())]).unwrap();
+        write_all(&folder, &[("a", "1"), ("b", "2")]).unwrap();
+        write_all(&folder, &[("a", "3")]).unwrap();
         assert_eq!(names(&folder), ["a", "b"]);
         assert_eq!(fs::read_to_string(folder.join("a")).unwrap(), "3");
-        write_all(&folder, &[("again/c", "4".into())]).unwrap();
+        write_all(&folder, &[("again/c", "4")]).unwrap();
         assert_eq!(names(&folder), ["a", "again", "b"]);
         assert_eq!(fs::read_to_string(folder.join("again/c")).unwrap(), "4");
         fs::remove_dir_all(fresh("stay")).unwrap_or_default();
@@ -137,7 +138,7 @@ mod tests {
     fn an_error_leaves_no_temporaries() {
         let folder = fresh("error");
         fs::create_dir_all(folder.join("b")).unwrap();
-        let files = [("b", "2".into()), ("a", "1".into())];
+        let files = [("b", "2"), ("a", "1")];
         let error = write_all(&folder, &files).unwrap_err();
         assert!(!error.is_input() && !error.is_inference());
         assert!(error.to_string().contains("b: the file could not be put"));
@@ -149,7 +150,7 @@ mod tests {
     fn a_file_in_the_way_is_an_error() {
         let folder = fresh("way");
         fs::write(&folder, "x").unwrap();
-        assert!(write_all(&folder, &[("a", "1".into())]).is_err());
+        assert!(write_all(&folder, &[("a", "1")]).is_err());
         assert_eq!(fs::read_to_string(&folder).unwrap(), "x");
         fs::remove_file(&folder).unwrap();
     }

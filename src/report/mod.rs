@@ -114,7 +114,7 @@ pub struct CalibrationReport {
 
 impl CalibrationReport {
     /// What stands before "errors".
-    fn errors_told(&self) -> &str {
+    pub(crate) fn errors_told(&self) -> &str {
         match self.noises.is_empty() {
             true => &self.noise,
             false => "inferred",
