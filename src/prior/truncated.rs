@@ -54,7 +54,8 @@ impl<K: Kind, D: Cumulative<K>> Truncated<K, D> {
 
     /// ln of the probability between two numbers, in the smaller tail.
     fn log_between(&self, low: Real<K>, high: Real<K>) -> Real<K> {
-        if !(low < high) {
+        let is_range = low < high;
+        if !is_range {
             return impossible();
         }
         let (below_low, above_low) = self.log_parts(low);
@@ -79,7 +80,7 @@ impl<K: Kind, D: Cumulative<K>> Truncated<K, D> {
             let slope = self.of.log_density(x).value() - below;
             (below - goal, slope.exp())
         };
-        let ends = self.bracket(&f);
+        let ends = self.bracket(f);
         root(ends, 0.5 * (ends.0 + ends.1), f)
     }
 
