@@ -169,7 +169,7 @@ fn a_poisson_regression_on_a_process() {
     let all = ["rho", "alpha"].into_iter().chain(f.iter().map(|f| &f[..]));
     let names: Vec<_> = all.map(|name| [name, name]).collect();
     let known = &read("reference.json")["gp_pois_regr-gp_pois_regr"];
-    let backend = Nuts { draws: 2000, ..Nuts::default() };
+    let backend = Nuts { draws: 8000, ..Nuts::default() };
     check(&model, &backend, known, &names);
 }
 

@@ -319,7 +319,7 @@ impl Writer<'_> {
         let (run, prior) = (at(span, "run"), self.distribution(prior));
         let at = Span::mixed_site().located_at(span);
         match several {
-            true => quote_spanned!(at=> #run.joint(#label, #length, #prior)?),
+            true => quote_spanned!(at=> #run.joint(#label, #length, &#prior)?),
             false => {
                 quote_spanned!(at=> #run.vector(#label, #length, #prior)?)
             }

@@ -68,7 +68,7 @@ impl<K: Kind> Run<'_, K> {
         &mut self,
         label: Label<'_>,
         n: usize,
-        joint: impl Joint<K>,
+        joint: &impl Joint<K>,
     ) -> Result<List<Real<K>>, Stop> {
         joint
             .check(n)

@@ -71,7 +71,7 @@ struct Next<'d, K: Kind, D> {
 impl<K: Kind, D: Prior<K>> Distribution<K> for Next<'_, K, D> {
     fn log_density(&self, x: Real<K>) -> Real<K> {
         match self.above {
-            Some(above) if !(x > above) => impossible(),
+            Some(above) if x <= above => impossible(),
             _ => self.of.log_density(x) + self.log_place,
         }
     }

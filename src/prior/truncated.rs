@@ -54,7 +54,8 @@ impl<K: Kind, D: Cumulative<K>> Truncated<K, D> {
 
     /// ln of the probability between two numbers, in the smaller tail.
     fn log_between(&self, low: Real<K>, high: Real<K>) -> Real<K> {
-        if !(low < high) {
+        let is_range = low < high;
+        if !is_range {
             return impossible();
         }
         let (below_low, above_low) = self.log_parts(low);
@@ -79,7 +80,7 @@ impl<K: Kind, D: Cumulative<K>> Truncated<K, D> {
             let slope = self.of.log_density(x).value() - below;
             (below - goal, slope.exp())
         };
-        let ends = self.bracket(&f);
+        let ends = self.bracket(f);
         root(ends, 0.5 * (ends.0 + ends.1), f)
     }
 
@@ -167,14 +168,16 @@ mod tests {
         for p in [1e-12, 1e-4, 0.3, 0.5, 0.9, 0.9999] {
             let x = Real::new(of.quantile(p).unwrap());
             let (below, above) = (of.log_below(x), of.log_above(x));
-            // Of the quantile's round-off, seen through the density, and of
-            // 1 - p as a number.
+            // Of the quantile's round-off, seen through the density, of 1 - p
+            // as a number, and of statrs's normal quantile.
             let slope = (of.log_density(x).value() - p.ln()).exp();
-            let error = 1e-10 + 1e-14 * slope * x.value().abs();
-            assert!((below.value() - p.ln()).abs() < error, "{p}");
+            let error = 1e-9 + 1e-14 * slope * x.value().abs();
+            let off = (below.value() - p.ln()).abs();
+            assert!(off < error, "{p} {off}");
             let slope = (of.log_density(x) - above).value().exp();
-            let error = 1e-11 + 1e-14 * slope * x.value().abs();
-            assert!((above.value() - (-p).ln_1p()).abs() < error, "{p}");
+            let error = 1e-9 + 1e-14 * slope * x.value().abs();
+            let off = (above.value() - (-p).ln_1p()).abs();
+            assert!(off < error, "{p} {off}");
         }
     }
 
@@ -216,7 +219,8 @@ mod tests {
             let part = |x| cut.log_between(Real::new(low), Real::new(x));
             for p in [1e-6, 0.2, 0.5, 0.8] {
                 let share = (part(of(p)) - cut.log_mass()).value().exp();
-                assert!((share / p - 1.0).abs() < 1e-8, "{low} {p} {share}");
+                // Of 30 + 3e-8 the last digit is a 1e-7th of the rest.
+                assert!((share / p - 1.0).abs() < 1e-6, "{low} {p} {share}");
             }
             let x = cut.draw(&mut Seed::new(1).rng()).unwrap();
             assert!(x > low && x < high && cut.support().contains(x));
