@@ -49,7 +49,8 @@ pub fn loo(log_likelihood: &[Vec<f64>]) -> Option<Loo> {
 ///
 /// ```
 /// use couloir::draws::{loo, loo_of_chains};
-/// let draw = |i: i32| vec![-0.5 - (f64::from(i) * 0.7).sin().powi(4)];
+/// let at = |i: i32| (f64::from(i) * 0.7).sin().powi(4);
+/// let draw = |i: i32| vec![-0.5 - at(i), -0.7 - at(i + 1)];
 /// let table: Vec<_> = (0..500).map(draw).collect();
 /// assert_eq!(loo_of_chains(&table, 1.0), loo(&table));
 /// assert_ne!(loo_of_chains(&table, 0.3), loo(&table));
