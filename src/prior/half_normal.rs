@@ -1,6 +1,6 @@
 //! The half-normal distribution.
 
-use std::f64::consts::{LN_2, SQRT_2};
+use std::f64::consts::{LN_2, PI, SQRT_2};
 
 use rand_distr::{Distribution as _, StandardNormal};
 use statrs::function::erf::erf_inv;
@@ -77,10 +77,27 @@ impl<K: Kind> Prior<K> for HalfNormal<K> {
 
 impl<K: Kind> Cumulative<K> for HalfNormal<K> {
     fn log_below(&self, x: Real<K>) -> Real<K> {
-        ln_1m_exp(self.log_above(x))
+        let q = x / self.scale;
+        match q < 1.0 {
+            true => ln_within(q),
+            false => ln_1m_exp(self.log_above(x)),
+        }
     }
 
     fn log_above(&self, x: Real<K>) -> Real<K> {
         ln_normal_below(-x / self.scale) + LN_2
     }
+}
+
+/// ln of the probability that a standard normal is nearer to 0 than `q`, by
+/// 2 phi(q) (q + q^3/3 + q^5/(3 5) + ..) (Abramowitz and Stegun 26.2.11), for
+/// q below 1: of the twentieth term nothing is left there. One minus the rest
+/// would have lost its digits near 0.
+fn ln_within<K: Kind>(q: Real<K>) -> Real<K> {
+    let square = q * q;
+    let mut sum = Real::new(0.0);
+    for n in (1..20).rev() {
+        sum = (sum + 1.0) * square / (2.0 * f64::from(n) + 1.0);
+    }
+    q.ln() + 0.5 * (2.0 / PI).ln() - 0.5 * square + (sum + 1.0).ln()
 }

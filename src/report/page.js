@@ -1,17 +1,17 @@
-// What a page does when it is touched: a key of a legend hides its series, and
-// a panel reads out the values under the pointer or the arrow keys. Without
-// it the page says the same.
+/* What a page does when it is touched: a key of a legend hides its series, and
+   a panel reads out the values under the pointer or the arrow keys. Without
+   it the page says the same. */
 "use strict";
 
 const POINT = /([ML])(-?[\d.]+) (-?[\d.]+)/g;
 
-// A path's points [px], each with whether the pen is down on the way to it.
+/* A path's points [px], each with whether the pen is down on the way to it. */
 function points(path) {
   const all = path.getAttribute("d").matchAll(POINT);
   return [...all].map(([, verb, x, y]) => [verb === "L", +x, +y]);
 }
 
-// The heights at which a path passes x; of dots that of the nearest one.
+/* The heights at which a path passes x; of dots that of the nearest one. */
 function heights(path, x) {
   const all = points(path);
   if (!all.some(([down]) => down)) {
@@ -31,7 +31,7 @@ function heights(path, x) {
   return found;
 }
 
-// An axis: from a coordinate on the canvas to a number, and to its text.
+/* An axis: from a coordinate on the canvas to a number, and to its text. */
 function axis(ends, low, high) {
   const [a, b] = ends.split(" ").map(Number);
   const places = Math.min(9, Math.max(0, Math.ceil(-Math.log10((b - a) / 500))));
@@ -44,7 +44,7 @@ function box(rect) {
   return { x: of("x"), y: of("y"), width: of("width"), height: of("height") };
 }
 
-// What stands at x in a panel, in words.
+/* What stands at x in a panel, in words. */
 function reading(svg, panel, x) {
   const { x: left, y: top, width, height } = box(panel);
   const across = axis(panel.dataset.x, left, left + width);
@@ -69,7 +69,7 @@ function reading(svg, panel, x) {
   return named(panel.dataset.across, across(x)) + (values ? `: ${values}` : "");
 }
 
-// A line across a panel, and what stands there.
+/* A line across a panel, and what stands there. */
 function readable(svg, panel, output) {
   const mark = document.createElementNS(svg.namespaceURI, "path");
   mark.setAttribute("class", "mark");
@@ -109,7 +109,7 @@ function pointed(svg, panels) {
   svg.addEventListener("pointerleave", () => panels.forEach((p) => p.hide()));
 }
 
-// A key that hides and shows what it stands for.
+/* A key that hides and shows what it stands for. */
 function toggle(svg, key) {
   const name = key.dataset.key;
   const drawn = [...svg.querySelectorAll("[data-series]")];

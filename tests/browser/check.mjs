@@ -83,7 +83,10 @@ async function sameFigures(page, { json }) {
     assert.ok(known, `${name} is not in the document`);
     const value = Number(median.replace("\u2212", "-").replaceAll("\u202f", ""));
     const exact = known.q50 ?? known.median;
-    assert.ok(Math.abs(value - exact) <= 6e-3 * Math.abs(exact) + 1e-12, `${name}: ${median}, ${exact}`);
+    // Half of the last digit that is shown.
+    const [, digits, power] = /^[^.e]*(?:\.(\d+))?(?:e(.+))?$/.exec(median.replace("\u2212", "-"));
+    const half = 0.501 * 10 ** (Number((power ?? "0").replace("\u2212", "-")) - (digits ?? "").length);
+    assert.ok(Math.abs(value - exact) <= half, `${name}: ${median}, ${exact}`);
   }
 }
 
