@@ -220,7 +220,8 @@ impl<P: Program> Subject<'_, P> {
         };
         let forces = &row.found()?.forces;
         if !options.quick {
-            diagnosis.rest = self.rest(row, after.as_ref(), seed)?;
+            (diagnosis.rest, diagnosis.left) =
+                self.rest(row, after.as_ref(), seed)?;
         }
         self.write_out(&mut diagnosis, chosen.as_ref(), forces, options);
         diagnosis.forces = forces.clone();
@@ -235,22 +236,22 @@ impl<P: Program> Subject<'_, P> {
         row: &Row<'_, P>,
         after: Option<&FittedModel<'_>>,
         seed: Seed,
-    ) -> Result<Option<Rest>> {
+    ) -> Result<(Option<Rest>, Option<FreeForce>)> {
         let program = row.noisy.program();
-        let force = match after {
-            Some(after) if after.rough => return Ok(None),
+        match after {
+            Some(after) if after.rough => Ok((None, None)),
             Some(FittedModel { mechanisms, fit, .. }) => {
                 let seed = seed.child(50);
-                left(program, mechanisms, fit, &self.extent, seed)?
+                let force =
+                    left(program, mechanisms, fit, &self.extent, seed)?;
+                Ok((Some(Rest::of(&force)), Some(force)))
             }
             None => {
                 let forces = &row.found()?.forces;
                 let over = forces.iter().find(|f| f.axis == Axis::Place);
-                let Some(force) = over else { return Ok(None) };
-                force.clone()
+                Ok((over.map(Rest::of), None))
             }
-        };
-        Ok(Some(Rest::of(&force)))
+        }
     }
 
     /// From evidences to probabilities, a verdict, and what is added.

@@ -53,6 +53,8 @@ pub struct Diagnosis {
     /// The force that is left beside what was selected; `None` where the
     /// free-form force itself was.
     pub rest: Option<Rest>,
+    /// The same as a force over distance.
+    pub left: Option<FreeForce>,
     /// The corrected model, written out.
     pub corrected: Corrected,
     /// Its posterior draws; those of the model as it was where nothing is

@@ -293,6 +293,7 @@ pub(super) fn diagnosis() -> Diagnosis {
         parameters: parameters(),
         law: law(),
         rest: Some(Rest { specific_force_sd: 0.05, specific_force_q95: 0.12 }),
+        left: None,
         corrected: corrected(),
         draws: None,
         forces: vec![

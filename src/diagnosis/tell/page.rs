@@ -7,7 +7,9 @@ use crate::diagnosis::tell::phrases::{
     called, capital, friction, interval, is_corrected, noise_row, probability,
     with_unit,
 };
-use crate::diagnosis::tell::pictures::{Figure, bars, forces, of_event};
+use crate::diagnosis::tell::pictures::{
+    Figure, bars, forces, left_over, of_event,
+};
 use crate::diagnosis::tell::words::{before_and_after, in_words};
 use crate::diagnosis::{
     Diagnosis, Hypothesis, Judged, LawParameters, ParameterSummary, Pictured,
@@ -40,6 +42,7 @@ pub fn page(d: &Diagnosis) -> String {
                 (on_track(d, p, i))
             }
             (section(force_title(d.verdict), forces(d)))
+            (section("What is left", left_over(d)))
             (section("What may be missing", bars(d)))
             (mechanisms(d))
             (noises(d))

@@ -133,7 +133,7 @@ impl Axes {
     }
 
     fn draw_x(&self, canvas: &mut Canvas, name: &str) {
-        let Frame { left, right, bottom, .. } = self.frame;
+        let Frame { bottom, .. } = self.frame;
         let mut free = f64::NEG_INFINITY;
         for (value, label) in self.x_ticks() {
             let x = self.at(value, 0.0).0;
@@ -147,6 +147,12 @@ impl Axes {
                 free = x + half + 6.0;
             }
         }
+        self.draw_name(canvas, name);
+    }
+
+    /// Draws the name below the x axis, under where its numbers are.
+    pub(crate) fn draw_name(&self, canvas: &mut Canvas, name: &str) {
+        let Frame { left, right, bottom, .. } = self.frame;
         let at = (0.5 * (left + right), bottom + 10.0 + 2.0 * FONT + 2.0);
         canvas.text(at, Anchor::Middle, INK, name);
         // A legend may have taken more lines than there was room for.

@@ -14,6 +14,7 @@ mod histograms;
 mod matrix;
 mod pairs;
 pub(crate) mod palette;
+mod ranks;
 mod recording;
 mod reliability;
 mod residuals;
@@ -56,12 +57,13 @@ pub struct Picture {
 /// ```
 pub fn pictures(report: &CalibrationReport) -> Vec<Picture> {
     type Draw = fn(&CalibrationReport, Sheet) -> Option<Picture>;
-    let all: [Draw; 6] = [
+    let all: [Draw; 7] = [
         recording::draw,
         track::draw,
         densities::draw,
         pairs::draw,
         traces::draw,
+        ranks::draw,
         residuals::draw,
     ];
     let both = |draw: Draw| {

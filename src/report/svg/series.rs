@@ -7,6 +7,10 @@ pub(crate) const FLOWS: &str = "90 % of flows";
 pub(crate) const WITH_ERRORS: &str = "90 % with errors";
 pub(crate) const LOCATED: &str = "located stretch";
 
+/// What chains are called.
+pub(crate) const CHAIN_NAMES: [&str; 6] =
+    ["chain 1", "chain 2", "chain 3", "chain 4", "chain 5", "chain 6"];
+
 /// The least that a band of a quantity is drawn to: errors are normal and may
 /// make a speed negative, but no mass slides uphill.
 pub(crate) fn least(quantity: &str) -> f64 {

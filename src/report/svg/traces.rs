@@ -3,6 +3,7 @@
 use super::axes::{Axes, Key, Labels, Scale, legend};
 use super::canvas::{Canvas, FONT, Frame, Sheet};
 use super::palette::{CHAINS, Pen};
+use super::series::CHAIN_NAMES;
 use super::{Picture, with_unit};
 use crate::report::text::{shorten, thinned};
 use crate::report::{CalibrationReport, ParameterReport};
@@ -11,10 +12,6 @@ use crate::report::{CalibrationReport, ParameterReport};
 const POINTS: usize = 24_000;
 const PANEL: f64 = 84.0;
 const ROW: f64 = PANEL + FONT + 18.0;
-
-/// What chains are called.
-const NAMES: [&str; 6] =
-    ["chain 1", "chain 2", "chain 3", "chain 4", "chain 5", "chain 6"];
 
 /// A panel for each parameter that has chains.
 pub(super) fn draw(
@@ -58,7 +55,7 @@ pub(super) fn draw(
 }
 
 fn entries(chains: usize) -> Vec<(Key, &'static str)> {
-    let keys = NAMES.iter().zip(CHAINS);
+    let keys = CHAIN_NAMES.iter().zip(CHAINS);
     let mut out: Vec<_> = keys
         .take(chains)
         .map(|(name, c)| (Key::Line(Pen::new(c, 2.5)), *name))
@@ -78,7 +75,7 @@ fn lines(canvas: &mut Canvas, axes: &Axes, p: &ParameterReport, most: usize) {
     canvas.clip(axes.frame);
     let colours = CHAINS.into_iter().cycle();
     for (i, (chain, colour)) in p.chains.iter().zip(colours).enumerate() {
-        canvas.of(NAMES.get(i).copied().unwrap_or_default());
+        canvas.of(CHAIN_NAMES.get(i).copied().unwrap_or_default());
         let kept = thinned(chain.len(), most).into_iter();
         let points: Vec<_> =
             kept.map(|i| axes.at(i as f64, chain[i])).collect();

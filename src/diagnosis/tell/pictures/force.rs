@@ -67,6 +67,29 @@ fn drawn(d: &Diagnosis, sheet: Sheet) -> Option<Figure> {
     })
 }
 
+/// The force that is left beside what was selected.
+pub(crate) fn left_over(d: &Diagnosis) -> Option<Figure> {
+    let force = d.left.as_ref().filter(|force| force.at.len() > 1)?;
+    Figure::both(|sheet| {
+        let entries = entries(&Diagnosis::default());
+        let mut canvas = Canvas::on(sheet, "left", LARGE + ROOM + 40.0);
+        let top = legend(&mut canvas, 12.0, 2.0, &entries) + 22.0;
+        let (right, bottom) = (sheet.width() - 14.0, top + LARGE);
+        let left = Axes::margin(scale(force), LARGE);
+        let frame = Frame { left, top, right, bottom };
+        panel(&mut canvas, frame, force, &[]);
+        Some(Figure {
+            id: "left".to_owned(),
+            caption: "The same force of any shape, beside what the corrected \
+                 model has: where the band holds zero along the whole run, \
+                 the recording asks for nothing more."
+                .to_owned(),
+            phone: String::new(),
+            svg: canvas.finish("The force that is left, with its band"),
+        })
+    })
+}
+
 /// The force over distance, or the first there is.
 fn main(forces: &[FreeForce]) -> Option<&FreeForce> {
     let drawable = |f: &&FreeForce| f.at.len() > 1;

@@ -9,7 +9,7 @@ mod track;
 
 pub(crate) use bars::bars;
 pub(crate) use figure::Figure;
-pub(crate) use force::forces;
+pub(crate) use force::{forces, left_over};
 use recording::recording;
 use track::track;
 
@@ -29,7 +29,7 @@ pub(crate) fn of_event(
 pub(crate) fn figures(d: &Diagnosis) -> Vec<Figure> {
     let events = d.pictured.iter().enumerate();
     let each = events.flat_map(|(i, p)| of_event(d, p, i));
-    each.chain([forces(d), bars(d)]).flatten().collect()
+    each.chain([forces(d), left_over(d), bars(d)]).flatten().collect()
 }
 
 /// The pictures of a diagnosis as files: the name of each, and an SVG document
