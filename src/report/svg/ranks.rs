@@ -1,7 +1,7 @@
 //! Where the draws of each chain rank among those of all chains (Vehtari et
 //! al. 2021, section 4.3).
 
-use super::axes::{Axes, Key, Labels, Scale, legend};
+use super::axes::{Axes, Key, Scale, legend};
 use super::canvas::{Canvas, Frame, Point, Sheet};
 use super::palette::{CHAINS, GREY, Pen};
 use super::series::CHAIN_NAMES;
