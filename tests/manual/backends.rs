@@ -30,7 +30,12 @@ fn page(entry: &Entry) -> Page {
 /// The one that is a feature: its page is the same without it.
 fn nuts() -> Page {
     let built = " It needs couloir built with `--features nuts`.";
-    of("nuts", "no-U-turn sampler on the real line, exact gradient", "draws", built)
+    of(
+        "nuts",
+        "no-U-turn sampler on the real line, exact gradient",
+        "draws",
+        built,
+    )
 }
 
 fn of(name: &str, about: &str, gives: &str, built: &str) -> Page {
@@ -38,11 +43,11 @@ fn of(name: &str, about: &str, gives: &str, built: &str) -> Page {
     let told = Told::of("infer/backends", file);
     let text = format!(
         "{}\n\nIt gives {gives}.{built} On the command line: `--backend \
-         {name}`. [Which backend when](../../backends.md) compares them.\n",
+         {name}`. [Which backend when](../../../../docs/backends.md) compares them.\n",
         told.head
     );
     let about = format!("{}.", capital(about));
-    Page::of("backends", name, &about, &text)
+    Page::of("backends", [name, name], &about, &text)
 }
 
 fn capital(text: &str) -> String {

@@ -76,7 +76,8 @@ fn picture(
 ) -> (String, String) {
     let (names, lines): (Vec<String>, Vec<Curve>) = named.into_iter().unzip();
     let label = label.to_owned();
-    let panel = Curves { label, curves: lines.into_iter().enumerate().collect() };
+    let panel =
+        Curves { label, curves: lines.into_iter().enumerate().collect() };
     let drawn = curves("curves", "Curves", caption(room), &names, &[panel]);
     (format!("pictures/{room}-{name}.svg"), drawn.svg)
 }
@@ -143,7 +144,8 @@ fn of_mechanism(mechanism: Box<dyn Mechanism>) -> Vec<(String, Curve)> {
         unknowns[0].unit.trim_start_matches('1')
     );
     let mut without = with.clone();
-    without[0] = 0.0;
+    // Zero is the end of a prior on one side, and not within it.
+    without[0] = 1e-9;
     let law = Laws::default().parse("voellmy").unwrap();
     let iid = noise::parse("iid").unwrap();
     let (times, none) = (times(), BTreeMap::new());

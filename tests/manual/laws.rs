@@ -35,7 +35,7 @@ fn page(law: &dyn Law) -> Page {
         solved(law.varies()),
         source(sources::LAWS, name),
     );
-    Page::of("laws", name, &told.head, &text)
+    Page::of("laws", [name, name], &told.head, &text)
 }
 
 fn solved(varies: Varies) -> &'static str {

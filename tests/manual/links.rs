@@ -48,9 +48,9 @@ fn anchors(text: &str) -> BTreeSet<String> {
 
 fn anchor(heading: &str) -> String {
     let kept = heading.trim().to_lowercase();
-    let kept = kept.chars().filter(|c| {
-        c.is_alphanumeric() || matches!(c, ' ' | '-' | '_')
-    });
+    let kept = kept
+        .chars()
+        .filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
     kept.map(|c| if c == ' ' { '-' } else { c }).collect()
 }
 
@@ -78,6 +78,9 @@ fn a_broken_link_is_seen() {
     assert!(fault(&page, "nowhere.md").is_some());
     assert!(fault(&page, "formats.md#nowhere").is_some());
     assert_eq!(fault(&page, "formats.md#event-folder"), None);
-    assert_eq!(anchor(" The file `event.toml`, line 3"), "the-file-eventtoml-line-3");
+    assert_eq!(
+        anchor(" The file `event.toml`, line 3"),
+        "the-file-eventtoml-line-3"
+    );
     assert_eq!(targets("a [b](c.md#d)\n```\n[e](f.md)\n```"), ["c.md#d"]);
 }

@@ -23,6 +23,7 @@ mod told;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Once;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -32,9 +33,27 @@ fn book() -> PathBuf {
     root().join("manual/src")
 }
 
-/// Whether the pages are to be written, not compared.
-fn writes() -> bool {
-    std::env::var_os("COULOIR_WRITE_MANUAL").is_some()
+/// Writes what is made from the code, once, where that was asked for.
+fn fresh() {
+    static WRITTEN: Once = Once::new();
+    WRITTEN.call_once(|| {
+        if std::env::var_os("COULOIR_WRITE_MANUAL").is_none() {
+            return;
+        }
+        for (path, text) in pages::all().into_iter().chain(drawn::all()) {
+            write(&path, &text);
+        }
+        let contents = contents();
+        let (chapters, _) = contents.split_once(REFERENCE).unwrap();
+        write("SUMMARY.md", &format!("{chapters}{}", pages::contents()));
+    });
+}
+
+/// Where the part of the contents begins that is made from the code.
+const REFERENCE: &str = "# Reference\n";
+
+fn contents() -> String {
+    fs::read_to_string(book().join("SUMMARY.md")).unwrap()
 }
 
 fn write(path: &str, text: &str) {
@@ -47,12 +66,10 @@ const MEND: &str = "write them anew with COULOIR_WRITE_MANUAL=1";
 
 #[test]
 fn the_reference_says_what_the_code_says() {
+    fresh();
     let mut old = Vec::new();
     let mut named = BTreeSet::new();
     for (path, text) in pages::all() {
-        if writes() {
-            write(&path, &text);
-        }
         let found = fs::read_to_string(book().join(&path));
         if found.ok().as_ref() != Some(&text) {
             old.push(path.clone());
@@ -67,12 +84,9 @@ fn the_reference_says_what_the_code_says() {
 
 #[test]
 fn the_contents_list_every_page() {
-    let mut text = fs::read_to_string(book().join("SUMMARY.md")).unwrap();
-    let at = text.find("# Reference\n").unwrap();
-    if writes() {
-        text = format!("{}{}", &text[..at], pages::contents());
-        write("SUMMARY.md", &text);
-    }
+    fresh();
+    let text = contents();
+    let at = text.find(REFERENCE).unwrap();
     assert!(text[at..] == pages::contents(), "{MEND}");
     let listed: BTreeSet<_> =
         links::targets(&text).iter().map(|t| book().join(t)).collect();
@@ -83,6 +97,7 @@ fn the_contents_list_every_page() {
 
 #[test]
 fn every_link_leads_somewhere() {
+    fresh();
     let mut files = links::pages(&book());
     files.push(root().join("README.md"));
     let mut faults = Vec::new();

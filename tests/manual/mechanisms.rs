@@ -61,7 +61,7 @@ fn page(variants: &[&dyn Mechanism]) -> Page {
         laws(variants[0]),
         source(sources::MECHANISMS, name)
     ));
-    Page::of("mechanisms", name, &told.head, &text)
+    Page::of("mechanisms", [name, name], &told.head, &text)
 }
 
 fn of_variant(mechanism: &dyn Mechanism) -> String {
@@ -120,7 +120,6 @@ fn laws(mechanism: &dyn Mechanism) -> String {
     text
 }
 
-const SHOWN_FOR: &str =
-    "Default priors are scaled to the event. Those here are for a run of \
+const SHOWN_FOR: &str = "Default priors are scaled to the event. Those here are for a run of \
      1000 m and 60 s with values every 0.5 s, an upper quartile of the speeds \
      of 30 m/s, and a release 100 m from the track's first point.";

@@ -33,18 +33,21 @@ fn page(pattern: &str) -> Page {
         struct_name(name),
         parameters(&rows),
     );
-    Page::of("noises", name, &told.head, &text)
+    Page::of("noises", [name, name], &told.head, &text)
 }
 
 /// How a noise that holds it is written, and what to say of that.
-fn written(pattern: &str, name: &str) -> (String, &'static str) {
+fn written(pattern: &str, name: &str) -> (String, String) {
     let one = pattern.replace("(k)", "(1)");
     let sum = format!("white + {name}");
     let adds = |text: &str| noise::parse(text).is_ok();
     match (adds(&one), adds(&format!("growth + {one}"))) {
-        (true, true) => (one, ", or in a sum."),
-        (true, false) => (one, ", by itself."),
-        (false, _) => (sum, " only in a sum, such as `white` with it."),
+        (true, true) => (one, ", or in a sum.".to_owned()),
+        (true, false) => (one, ", by itself.".to_owned()),
+        (false, _) => {
+            let remark = format!(" in a sum only, such as `{sum}`.");
+            (sum, remark)
+        }
     }
 }
 

@@ -15,9 +15,15 @@ pub(crate) struct Page {
 }
 
 impl Page {
-    pub(crate) fn of(room: &str, name: &str, head: &str, text: &str) -> Self {
+    /// The page of a part in a room, its file called `file` and itself `name`.
+    pub(crate) fn of(
+        room: &str,
+        [file, name]: [&str; 2],
+        head: &str,
+        text: &str,
+    ) -> Self {
         let first = head.split("\n\n").next().unwrap_or(head);
-        let picture = format!("pictures/{room}-{name}.svg");
+        let picture = format!("pictures/{room}-{file}.svg");
         let drawn = drawn::has(room);
         let picture = match drawn {
             true => format!(
@@ -27,7 +33,7 @@ impl Page {
             false => String::new(),
         };
         Self {
-            path: format!("reference/{room}/{name}.md"),
+            path: format!("reference/{room}/{file}.md"),
             name: name.to_owned(),
             head: first.replace('\n', " "),
             text: format!("{GENERATED}# {name}\n\n{text}{picture}"),

@@ -17,20 +17,17 @@ fn rooms() -> [Room; 5] {
     ]
 }
 
-const LAWS: &str =
-    "A law says what resists a unit mass: r [m/s2] in du/dt = g sin(theta) - \
+const LAWS: &str = "A law says what resists a unit mass: r [m/s2] in du/dt = g sin(theta) - \
      r. Here u is the speed, s the distance along the slope, theta the slope \
      angle, g = 9.81 m/s2, h the flow depth, kappa = -dtheta/ds. Laws add \
      up: `friction = \"coulomb + turbulent\"`.";
-const NOISES: &str =
-    "A noise says how the recorded values scatter about the motion: r_i is \
+const NOISES: &str = "A noise says how the recorded values scatter about the motion: r_i is \
      the i-th value less its prediction. Some add up: `noise = \"matern32 + \
      white\"`. `noise = \"infer\"` leaves the choice to the evidence.";
 const PRIORS: &str =
     "A prior says what is known of a parameter before the recording.";
 const BACKENDS: &str = "A backend explores the posterior.";
-const MECHANISMS: &str =
-    "A mechanism is a change that a model may lack. `diagnose` weighs them; \
+const MECHANISMS: &str = "A mechanism is a change that a model may lack. `diagnose` weighs them; \
      an event file may name those that its model is to have. Zero amplitude \
      gives the model back. g is 9.81 m/s2, theta the slope angle, u the \
      speed, s the distance, s0 where the run begins.";

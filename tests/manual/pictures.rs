@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::{MEND, book, drawn, write, writes};
+use super::{MEND, book, drawn, fresh};
 
 /// By how much a coordinate may differ: a tenth of a pixel, to which pictures
 /// are rounded, since the last digit of a function differs between machines.
@@ -10,11 +10,9 @@ const ROUNDED: f64 = 0.1001;
 
 #[test]
 fn the_pictures_are_those_that_the_code_draws() {
+    fresh();
     let mut old = Vec::new();
     for (path, svg) in drawn::all() {
-        if writes() {
-            write(&path, &svg);
-        }
         let found = fs::read_to_string(book().join(&path));
         if !found.is_ok_and(|found| alike(&found, &svg)) {
             old.push(path);

@@ -29,5 +29,5 @@ fn page(name: &str, arguments: usize) -> Page {
          Distributions, 1994 and 1995); look at the names of the arguments, \
          since a scale here is a rate elsewhere.\n"
     );
-    Page { name: format!("{name}"), ..Page::of("priors", &file, head, &text) }
+    Page::of("priors", [&file, name], head, &text)
 }

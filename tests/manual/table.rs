@@ -13,8 +13,7 @@ pub(crate) struct Row {
 /// The table; the column of meanings is left out where no row has one.
 pub(crate) fn parameters(rows: &[Row]) -> String {
     let all = rows.iter().all(|row| row.meaning.is_empty());
-    let (head, rule) =
-        if all { ("", "") } else { (" meaning |", "---|") };
+    let (head, rule) = if all { ("", "") } else { (" meaning |", "---|") };
     let mut table = format!(
         "| parameter |{head} unit | default prior | range | its middle 90 % |\n\
          |---|{rule}---|---|---|---|\n"
