@@ -141,7 +141,7 @@ fn of_mechanism(mechanism: Box<dyn Mechanism>) -> Vec<(String, Curve)> {
         "with {} = {} {}",
         unknowns[0].name,
         super::table::short(with[0]),
-        unknowns[0].unit.trim_start_matches('1')
+        if unknowns[0].unit == "1" { "" } else { unknowns[0].unit }
     );
     let mut without = with.clone();
     // Zero is the end of a prior on one side, and not within it.
