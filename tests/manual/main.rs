@@ -8,6 +8,7 @@
 
 mod backends;
 mod drawn;
+mod formats;
 mod laws;
 mod links;
 mod mechanisms;
