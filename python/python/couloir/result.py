@@ -64,8 +64,8 @@ class Result:
                 for name, text in alone.items()
             ]
         page = self.files.get("report.html", b"").decode()
-        found = re.findall(r"<figure.*?(<svg.*?</svg>)", page, re.DOTALL)
-        return [Figure(f"figure-{i}", svg) for i, svg in enumerate(found)]
+        drawn = r'<figure id="([^"]*)">.*?(<svg.*?</svg>)'
+        return [Figure(*one) for one in re.findall(drawn, page, re.DOTALL)]
 
     def draws(self) -> Draws:
         """Its posterior draws; none where there are none."""
