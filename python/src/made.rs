@@ -98,11 +98,12 @@ pub(crate) fn made(
 
 /// The end of the work, where it comes soon, and where to wait on.
 fn waited(end: Receiver<End>) -> (Option<End>, Receiver<End>) {
-    let found = match end.recv_timeout(PATIENCE) {
+    let found: Option<End> = match end.recv_timeout(PATIENCE) {
         Ok(found) => Some(found),
         Err(RecvTimeoutError::Timeout) => None,
         Err(RecvTimeoutError::Disconnected) => {
-            Some(Err(Box::new("its thread ended without a word")))
+            let why: Box<dyn Any + Send> = Box::new("it said no word");
+            Some(Err(why))
         }
     };
     (found, end)
