@@ -140,7 +140,8 @@ class Running(unittest.TestCase):
     def test_ctrl_c_is_heard(self):
         code = (
             "import couloir, signal, threading, os, time\n"
-            "threading.Timer(1, os.kill, (os.getpid(), signal.SIGINT)).start()\n"
+            "kill = os.getpid(), signal.SIGINT\n"
+            "threading.Timer(1, os.kill, kill).start()\n"
             "begun = time.monotonic()\n"
             "try:\n"
             "    couloir.calibrate(draws=900_000, quiet=True)\n"

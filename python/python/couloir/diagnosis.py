@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from couloir.event import Event
 from couloir.parameter import Parameter, of, parameters
@@ -131,8 +132,8 @@ def diagnose(
         quick=quick,
     )  # fmt: skip
     single = isinstance(events, (str, Event)) or hasattr(events, "__fspath__")
-    subjects = [events] if single else list(events)  # type: ignore[arg-type]
-    made = opened(work("diagnose", options, subjects, quiet),  # type: ignore[arg-type]
+    subjects: Any = [events] if single else events
+    made = opened(work("diagnose", options, list(subjects), quiet),
                   "diagnosis.json")  # fmt: skip
     known = made["document"]
     return of(
@@ -150,5 +151,5 @@ def diagnose(
     )
 
 
-def _judged(kind: type, one: Mapping) -> object:
+def _judged(kind: Any, one: Mapping[str, Any]) -> Any:
     return of(kind, one, parameters=parameters(one["parameters"]))

@@ -91,8 +91,8 @@ class Event:
             (folder / name).write_text(text, encoding="utf-8")
 
     def _recorded(self) -> tuple[str, Column]:
-        given = [(name, getattr(self, name)) for name in QUANTITIES]
-        given = [(name, values) for name, values in given if values is not None]
+        every = [(name, getattr(self, name)) for name in QUANTITIES]
+        given = [pair for pair in every if pair[1] is not None]
         if len(given) != 1:
             names = ", ".join(name for name, _ in given) or "none"
             raise InputError(
@@ -103,7 +103,7 @@ class Event:
 
     def _toml(self, quantity: str) -> str:
         depth = '"depth.csv"' if isinstance(self.depth, tuple) else self.depth
-        tables: dict[str, dict[str, object]] = {
+        tables: dict[str, dict[str, str | float | None]] = {
             "track": {"file": _text("track.csv")},
             "release": {"x": self.release, "velocity": self.release_velocity},
             "flow": {"depth": depth},
@@ -141,8 +141,8 @@ def _list(texts: Sequence[str]) -> str | None:
     return f"[{', '.join(map(_text, texts))}]" if texts else None
 
 
-def _value(value: object) -> str:
-    return value if isinstance(value, str) else repr(float(value))  # type: ignore[arg-type]
+def _value(value: str | float) -> str:
+    return value if isinstance(value, str) else repr(float(value))
 
 
 def _csv(columns: Mapping[str, Column]) -> str:
