@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, TypeVar
+
+Kind = TypeVar("Kind")
 
 
 @dataclass(frozen=True)
@@ -36,8 +38,9 @@ def parameters(known: Mapping[str, Any]) -> dict[str, Parameter]:
     return {name: of(Parameter, known[name], name=name) for name in known}
 
 
-def of(kind: Any, known: Mapping[str, Any], **more: Any) -> Any:
+def of(kind: type[Kind], known: Mapping[str, Any], **more: Any) -> Kind:
     """A dataclass of those entries of a document that it has fields for."""
-    names = {field.name for field in fields(kind)} - set(more)
+    every = fields(kind)  # type: ignore[arg-type]
+    names = {field.name for field in every} - set(more)
     own = {name: known[name] for name in names if name in known}
     return kind(**own, **more)
