@@ -1,11 +1,10 @@
 //! What a command answers, and whether `--strict` lets it pass.
 
-use std::collections::BTreeMap;
+use std::ffi::OsString;
 
 use clap::Args;
 
 use crate::error::{Error, Result};
-use crate::report::Origin;
 
 /// A refusal to take a result that should not be used for one.
 #[derive(Debug, Args)]
@@ -48,13 +47,13 @@ impl From<String> for Answer {
     }
 }
 
-/// Where a result comes from, of inputs with these checksums.
-pub(super) fn origin(inputs: BTreeMap<String, String>) -> Origin {
-    let words = std::env::args_os().skip(1);
+/// A command as it was typed, of these words behind the program's name.
+pub(super) fn typed(words: &[OsString]) -> String {
+    let words = words.iter();
     let words = words.map(|word| quoted_word(&word.to_string_lossy()));
     let typed: Vec<String> =
         ["couloir".to_owned()].into_iter().chain(words).collect();
-    Origin { command: typed.join(" "), inputs }
+    typed.join(" ")
 }
 
 /// A word of a command as a shell would take it.

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::answer::{Answer, Strict, origin, pretty, wrapped};
-use super::format::Formats;
+use super::answer::{Answer, Strict, pretty, wrapped};
+use super::format::{Formats, gathered};
+use super::made::{Files, Made};
 use super::progress::Told;
 use super::results::Output;
 use super::study::Read;
@@ -14,11 +15,12 @@ use super::{Subject, Work, backend_giving, width};
 use crate::averaged::{Open, calibrate_open};
 use crate::calibrate::Calibration;
 use crate::error::Result;
-use crate::infer::{Suited, suited};
+use crate::export::InferenceData;
+use crate::infer::{Progress, Suited, suited};
 use crate::model::Assembled;
 use crate::physics::friction::Laws;
 use crate::report::{
-    calibration_json, in_words, noises, page, picture, table,
+    Origin, calibration_json, in_words, noises, page, picture, table,
 };
 
 #[derive(Debug, Args)]
@@ -70,36 +72,21 @@ struct Found {
 }
 
 impl Arguments {
-    pub(super) fn run(&self, laws: &Laws, told: &Told) -> Result<Answer> {
-        let thin = self.thin.quickly(self.quick);
-        let subject = Subject { thin, ..self.subject.clone() };
+    pub(super) fn run(
+        &self,
+        laws: &Laws,
+        told: &Told,
+        typed: &str,
+    ) -> Result<Answer> {
         let names = [&FILES[..], &self.formats.names()].concat();
-        let results = self.output.ready(&names, subject.paths())?;
-        let mut read = subject.read(laws)?;
-        if self.quick {
-            read.said.note([QUICK.to_owned()]);
-        }
-        // Summed before the work, as they were read.
-        let origin = origin(subject.inputs()?);
-        let Found { mut found, model } = self.found(read, told)?;
+        let results = self.output.ready(&names, self.subject.paths())?;
+        let Found { found, model } = self.found(laws, told, typed)?;
         told.finish();
-        found.report.origin = origin;
         let data = self.formats.data(&found, &model);
-        let mut json = calibration_json(&found.report);
-        json["quick"] = self.quick.into();
-        if let Ok(Some(left_out)) = data.as_ref().map(|d| &d.left_out) {
-            json["loo"] = left_out.json();
-        }
-        let json = pretty(&json);
+        let left_out = data.as_ref().ok();
+        let json = self.json(&found, left_out);
         let wrote = data.and_then(|data| {
-            results.write(|| {
-                let texts = [page(&found.report), json.clone()];
-                let texts = texts.map(String::into_bytes);
-                let names = FILES.into_iter().map(PathBuf::from);
-                let mut files: Vec<_> = names.zip(texts).collect();
-                files.extend(self.formats.files(&found, &data)?);
-                Ok(files)
-            })
+            results.write(|| self.files(&found, &json, &data))
         });
         let text = match self.output.json {
             true => json,
@@ -109,7 +96,73 @@ impl Arguments {
         Ok(answer.after(wrote))
     }
 
-    fn found(&self, read: Read, told: &Told) -> Result<Found> {
+    /// The same without a folder or a terminal.
+    pub(super) fn made(
+        &self,
+        laws: &Laws,
+        progress: &dyn Progress,
+        typed: &str,
+    ) -> Result<Made> {
+        let Found { found, model } = self.found(laws, progress, typed)?;
+        let json = self.json(&found, None);
+        let files = self.files(&found, &json, &InferenceData::default())?;
+        Ok(Made { files, data: gathered(&found, &model) })
+    }
+
+    /// The event's calibration, with where it comes from.
+    fn found(
+        &self,
+        laws: &Laws,
+        progress: &dyn Progress,
+        typed: &str,
+    ) -> Result<Found> {
+        let thin = self.thin.quickly(self.quick);
+        let subject = Subject { thin, ..self.subject.clone() };
+        let mut read = subject.read(laws)?;
+        if self.quick {
+            read.said.note([QUICK.to_owned()]);
+        }
+        // Summed before the work, as they were read.
+        let inputs = subject.inputs()?;
+        let mut found = self.calibrated(read, progress)?;
+        let command = typed.to_owned();
+        found.found.report.origin = Origin { command, inputs };
+        Ok(found)
+    }
+
+    /// `calibration.json`.
+    fn json(
+        &self,
+        found: &Calibration,
+        data: Option<&InferenceData>,
+    ) -> String {
+        let mut json = calibration_json(&found.report);
+        json["quick"] = self.quick.into();
+        if let Some(left_out) = data.and_then(|d| d.left_out.as_ref()) {
+            json["loo"] = left_out.json();
+        }
+        pretty(&json)
+    }
+
+    fn files(
+        &self,
+        found: &Calibration,
+        json: &str,
+        data: &InferenceData,
+    ) -> Result<Files> {
+        let texts = [page(&found.report), json.to_owned()];
+        let texts = texts.map(String::into_bytes);
+        let names = FILES.into_iter().map(PathBuf::from);
+        let mut files: Files = names.zip(texts).collect();
+        files.extend(self.formats.files(found, data)?);
+        Ok(files)
+    }
+
+    fn calibrated(
+        &self,
+        read: Read,
+        progress: &dyn Progress,
+    ) -> Result<Found> {
         let Read { model, infers_noise, said } = read;
         let work = self.work.quickly(self.quick);
         let (backend, why) = match &self.backend {
@@ -124,7 +177,7 @@ impl Arguments {
         (open.noise, open.rest) = (infers_noise, self.rest);
         let seed = self.work.seed;
         let mut found =
-            calibrate_open(&model, open, backend.as_ref(), seed, told)?;
+            calibrate_open(&model, open, backend.as_ref(), seed, progress)?;
         found.report.backend_why = why;
         found.report.notes = said.notes;
         found.report.warnings.splice(..0, said.warnings);

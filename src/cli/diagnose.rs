@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::Value;
 
-use super::answer::{Answer, Strict, origin, pretty};
+use super::answer::{Answer, Strict, pretty};
+use super::made::{Files, Made};
 use super::progress::Told;
 use super::results::Output;
 use super::said::Said;
@@ -19,8 +20,11 @@ use crate::diagnosis::{
     page, pictures, summary,
 };
 use crate::error::{Error, Result};
+use crate::export::{InferenceData, of_draws};
+use crate::infer::Progress;
 use crate::model::Assembled;
 use crate::physics::friction::Laws;
+use crate::report::Origin;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -90,14 +94,17 @@ struct Found {
     labels: Vec<String>,
 }
 
-/// Files by their names in the folder of the results.
-type Files = Vec<(PathBuf, String)>;
-
 impl Arguments {
-    pub(super) fn run(&self, laws: &Laws, told: &Told) -> Result<Answer> {
+    pub(super) fn run(
+        &self,
+        laws: &Laws,
+        told: &Told,
+        typed: &str,
+    ) -> Result<Answer> {
         let subjects = self.subjects(&self.thin.quickly(self.quick));
         let results = self.output.ready(&FILES, &self.events)?;
-        let Found { found, labels } = self.found(&subjects, laws, told)?;
+        let Found { mut found, labels } = self.found(&subjects, laws, told)?;
+        found.origin.command = typed.to_owned();
         told.finish();
         let json = found.json();
         let mut names = FILES.to_vec();
@@ -120,13 +127,33 @@ impl Arguments {
         Ok(self.strict.answer(text, &found.doubts).after(wrote))
     }
 
+    /// The same without a folder or a terminal.
+    pub(super) fn made(
+        &self,
+        laws: &Laws,
+        progress: &dyn Progress,
+        typed: &str,
+    ) -> Result<Made> {
+        let subjects = self.subjects(&self.thin.quickly(self.quick));
+        let Found { mut found, labels } =
+            self.found(&subjects, laws, progress)?;
+        found.origin.command = typed.to_owned();
+        let mut files = reports(&found, &found.json());
+        files.extend(corrected(&subjects, &labels, &found, laws)?);
+        let data = match &found.draws {
+            Some(draws) => of_draws(draws, &labels),
+            None => Ok(InferenceData::default()),
+        };
+        Ok(Made { files, data })
+    }
+
     /// The diagnosis of the events and, where that was asked for, what
     /// another at half the rate makes of it.
     fn found(
         &self,
         subjects: &[Subject],
         laws: &Laws,
-        told: &Told,
+        progress: &dyn Progress,
     ) -> Result<Found> {
         let read = read_all(subjects, laws)?;
         // Looked at before the work and not after.
@@ -137,14 +164,15 @@ impl Arguments {
         // Summed before the work, as they were read.
         let sums =
             subjects.iter().map(Subject::inputs).collect::<Result<_>>()?;
-        let (mut found, labels) = self.diagnose(read, told)?;
+        let (mut found, labels) = self.diagnose(read, progress)?;
         found.notes = said.notes;
         if let Some(read) = halved {
-            let (again, _) = self.diagnose(read, told)?;
+            let (again, _) = self.diagnose(read, progress)?;
             found.check_rate(&again);
         }
         found.warnings.splice(..0, said.warnings);
-        found.origin = origin(inputs(sums, &labels));
+        let inputs = inputs(sums, &labels);
+        found.origin = Origin { inputs, ..Origin::default() };
         Ok(Found { found, labels })
     }
 
@@ -169,7 +197,7 @@ impl Arguments {
     fn diagnose(
         &self,
         read: Vec<Read>,
-        told: &Told,
+        progress: &dyn Progress,
     ) -> Result<(Diagnosis, Vec<String>)> {
         let infers_noise = read.iter().all(|one| one.infers_noise);
         let mut models: Vec<Assembled> =
@@ -185,7 +213,8 @@ impl Arguments {
             options.quick = self.quick;
             let sharing =
                 if self.pooled { Sharing::Pooled } else { Sharing::Shared };
-            let found = diagnose_together(&together, sharing, &options, told)?;
+            let found =
+                diagnose_together(&together, sharing, &options, progress)?;
             return Ok((found, together.labels().to_vec()));
         }
         let model =
@@ -193,7 +222,7 @@ impl Arguments {
         let mut options = Options::of(&model, self.seed);
         (options.odds, options.infers_noise) = (odds(), infers_noise);
         options.quick = self.quick;
-        let found = diagnose(&model, model.event(), &options, told)?;
+        let found = diagnose(&model, model.event(), &options, progress)?;
         Ok((found, Vec::new()))
     }
 }
@@ -218,14 +247,14 @@ fn inputs(
 
 fn reports(found: &Diagnosis, json: &Value) -> Files {
     let mut files = vec![
-        ("diagnosis.json".into(), pretty(json)),
+        (PathBuf::from("diagnosis.json"), pretty(json)),
         ("report.html".into(), page(found)),
     ];
     files.extend(found.draws.iter().map(|d| ("draws.csv".into(), d.to_csv())));
     let folder = Path::new("pictures");
     let pictures = pictures(found).into_iter();
     files.extend(pictures.map(|(name, svg)| (folder.join(name), svg)));
-    files
+    files.into_iter().map(|(name, text)| (name, text.into())).collect()
 }
 
 /// The events again, with the mechanisms that were found, each in a folder of
@@ -248,7 +277,9 @@ fn corrected(
         let mut folder = PathBuf::from(CORRECTED);
         folder.extend(labels.get(i));
         let event = event.corrected(laws, added, other)?.into_iter();
-        files.extend(event.map(|(name, text)| (folder.join(name), text)));
+        files.extend(
+            event.map(|(name, text)| (folder.join(name), text.into())),
+        );
     }
     Ok(files)
 }

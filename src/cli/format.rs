@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 
+use super::made::Files;
 use crate::calibrate::Calibration;
 use crate::error::Result;
 use crate::export::{InferenceData, Scope, gather, latex, of_draws};
@@ -93,9 +94,6 @@ pub(super) struct Formats {
     formats: Vec<Format>,
 }
 
-/// Files by their names in the folder of the results.
-type Files = Vec<(PathBuf, Vec<u8>)>;
-
 impl Formats {
     /// The names of the files, in a fixed order.
     pub(super) fn names(&self) -> Vec<&'static str> {
@@ -108,25 +106,15 @@ impl Formats {
     }
 
     /// The draws with what they say of the data, where a format has that.
-    ///
-    /// Draws averaged over noises are of no single model, and stay alone.
     pub(super) fn data(
         &self,
         found: &Calibration,
         model: &Assembled,
     ) -> Result<InferenceData> {
-        let draws = &found.draws;
-        let asked = self.asked().any(Format::has_data);
-        let data = match (asked, found.report.noises.is_empty()) {
-            (false, _) => InferenceData::default(),
-            (true, false) => of_draws(draws, &[])?,
-            (true, true) => {
-                let posterior = Posterior::new(model)?;
-                let seed = Seed::new(found.report.seed).called("export");
-                gather(&posterior, draws, &Scope::default(), seed)?
-            }
-        };
-        Ok(described(data, found))
+        match self.asked().any(Format::has_data) {
+            true => gathered(found, model),
+            false => Ok(described(InferenceData::default(), found)),
+        }
     }
 
     /// The files in these formats.
@@ -163,6 +151,25 @@ impl Formats {
         let _ = data;
         Ok(files)
     }
+}
+
+/// The draws with what they say of the data.
+///
+/// Draws averaged over noises are of no single model, and stay alone.
+pub(super) fn gathered(
+    found: &Calibration,
+    model: &Assembled,
+) -> Result<InferenceData> {
+    let draws = &found.draws;
+    let data = match found.report.noises.is_empty() {
+        false => of_draws(draws, &[])?,
+        true => {
+            let posterior = Posterior::new(model)?;
+            let seed = Seed::new(found.report.seed).called("export");
+            gather(&posterior, draws, &Scope::default(), seed)?
+        }
+    };
+    Ok(described(data, found))
 }
 
 /// What was run, on what, and how, as attributes.

@@ -5,9 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::answer::Answer;
+use super::made::Made;
 use super::results::{Results, folder};
 use super::width;
 use crate::error::Result;
+use crate::export::InferenceData;
 use crate::import::{FILES, Options, import};
 use crate::report::text::wrap;
 
@@ -78,6 +80,13 @@ impl Arguments {
             Some(_) => String::new(),
         });
         Ok(Answer::from(text).after(wrote))
+    }
+
+    /// The same without a folder or a terminal.
+    pub(super) fn made(&self) -> Result<Made> {
+        let files = import(&self.options())?.files().into_iter();
+        let files = files.map(|(name, text)| (name.into(), text.into()));
+        Ok(Made { files: files.collect(), data: Ok(InferenceData::default()) })
     }
 
     fn options(&self) -> Options {

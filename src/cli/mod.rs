@@ -14,6 +14,7 @@ mod examples;
 mod format;
 #[cfg(feature = "import")]
 mod import;
+mod made;
 mod man;
 mod new;
 mod pace;
@@ -27,18 +28,21 @@ mod simulate;
 mod study;
 mod thin;
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 
-use self::answer::Answer;
+use self::answer::{Answer, typed};
 use self::progress::Told;
 use self::screen::{complain, print, width};
 use self::thin::Thin;
 use crate::error::{Error, Result};
 use crate::infer::{BACKENDS, Backend, Bridge, Effort, Gives, Smc, backend};
 use crate::physics::friction::Laws;
+
+pub use self::made::{Files, Made, made};
 
 /// Calibrates avalanche friction laws from recordings, in a Bayesian way.
 #[derive(Debug, Parser)]
@@ -222,29 +226,58 @@ pub fn main() -> ExitCode {
 /// }
 /// ```
 pub fn main_with(laws: &Laws) -> ExitCode {
-    let matches = command_of(laws).get_matches();
-    let cli = match Cli::from_arg_matches(&matches) {
+    let words: Vec<_> = std::env::args_os().skip(1).collect();
+    ExitCode::from(run(laws, &words))
+}
+
+/// Runs the command with these words behind its name, and returns its exit
+/// code: for a program that carries the command.
+///
+/// ```no_run
+/// use couloir::physics::friction::Laws;
+/// let words = ["diagnose".into(), "--quick".into()];
+/// let code = couloir::cli::run(&Laws::default(), &words);
+/// assert_eq!(code, 0);
+/// ```
+pub fn run(laws: &Laws, words: &[OsString]) -> u8 {
+    let cli = match parsed(laws, words) {
         Ok(cli) => cli,
-        Err(error) => error.exit(),
+        Err(error) => {
+            // Where the terminal is gone, nobody is left to be told.
+            let _ = error.print();
+            return if error.use_stderr() { 2 } else { 0 };
+        }
     };
-    match cli.command.run(laws, &Told::new(cli.quiet)) {
+    let told = Told::new(cli.quiet);
+    match cli.command.run(laws, &told, &typed(words)) {
         Ok(answer) => end(&answer),
         Err(error) => refuse(&error),
     }
 }
 
+/// What the words ask for.
+fn parsed(
+    laws: &Laws,
+    words: &[OsString],
+) -> std::result::Result<Cli, clap::Error> {
+    let name = OsString::from("couloir");
+    let words = std::iter::once(&name).chain(words);
+    let matches = command_of(laws).try_get_matches_from(words)?;
+    Cli::from_arg_matches(&matches)
+}
+
 /// Tells an error; the exit code says whether the input is to be mended.
-fn refuse(error: &Error) -> ExitCode {
+fn refuse(error: &Error) -> u8 {
     complain(&error.to_string());
-    ExitCode::from(if error.is_input() { 2 } else { 1 })
+    if error.is_input() { 2 } else { 1 }
 }
 
 impl Command {
-    fn run(&self, laws: &Laws, told: &Told) -> Result<Answer> {
+    fn run(&self, laws: &Laws, told: &Told, typed: &str) -> Result<Answer> {
         match self {
-            Self::Calibrate(arguments) => arguments.run(laws, told),
+            Self::Calibrate(arguments) => arguments.run(laws, told, typed),
             Self::Compare(arguments) => arguments.run(laws, told),
-            Self::Diagnose(arguments) => arguments.run(laws, told),
+            Self::Diagnose(arguments) => arguments.run(laws, told, typed),
             Self::Challenge(arguments) => arguments.run(told),
             Self::Simulate(arguments) => arguments.run(laws),
             Self::New(arguments) => arguments.run().map(Answer::from),
@@ -263,7 +296,7 @@ const NOT_TO_BE_USED: u8 = 4;
 
 /// Prints an answer; the exit code says whether it is all there, and may be
 /// used.
-fn end(answer: &Answer) -> ExitCode {
+fn end(answer: &Answer) -> u8 {
     let printed = print(&answer.text);
     if let Some(why) = &answer.refused {
         complain(&format!("--strict: not to be used: {why}"));
@@ -272,8 +305,8 @@ fn end(answer: &Answer) -> ExitCode {
     let failed = failed.into_iter().flatten();
     let failed = failed.fold(None, |_, error| Some(refuse(error)));
     failed.unwrap_or(match answer.refused {
-        Some(_) => ExitCode::from(NOT_TO_BE_USED),
-        None => ExitCode::SUCCESS,
+        Some(_) => NOT_TO_BE_USED,
+        None => 0,
     })
 }
 

@@ -5,9 +5,12 @@ use serde_json::json;
 
 use super::Subject;
 use super::answer::{Answer, pretty};
+use super::made::{Files, Made};
 use super::results::Output;
+use super::said::Said;
 use super::study::Read;
 use crate::error::{Error, Result, Stop};
+use crate::export::InferenceData;
 use crate::model::Assembled;
 use crate::physics::State;
 use crate::physics::friction::Laws;
@@ -25,10 +28,50 @@ pub(super) struct Arguments {
     output: Output,
 }
 
+/// What a simulation writes.
+const FILES: [&str; 2] = ["simulation.csv", "simulation.json"];
+
+/// A motion at moments, and when and where it ends.
+struct Motion {
+    times: Vec<f64>,
+    states: Vec<State<Plain>>,
+    rest: Option<(f64, f64)>,
+}
+
+/// A simulation with what it is of.
+struct Found {
+    model: Assembled,
+    values: Vec<f64>,
+    motion: Motion,
+    said: Said,
+}
+
 impl Arguments {
     pub(super) fn run(&self, laws: &Laws) -> Result<Answer> {
-        let files = ["simulation.csv", "simulation.json"];
-        let results = self.output.ready(&files, self.subject.paths())?;
+        let results = self.output.ready(&FILES, self.subject.paths())?;
+        let Found { model, values, motion, said } = self.found(laws)?;
+        let mut document = document(&model, &values, &motion);
+        said.write_to(&mut document);
+        let document = pretty(&document);
+        let wrote = results.write(|| Ok(files(&motion, &document)));
+        let text = match self.output.json {
+            true => document,
+            false => tell(&model, &values, &motion) + &said.lines(),
+        };
+        Ok(Answer::from(text).after(wrote))
+    }
+
+    /// The same without a folder or a terminal.
+    pub(super) fn made(&self, laws: &Laws) -> Result<Made> {
+        let Found { model, values, motion, said } = self.found(laws)?;
+        let mut document = document(&model, &values, &motion);
+        said.write_to(&mut document);
+        let files = files(&motion, &pretty(&document));
+        Ok(Made { files, data: Ok(InferenceData::default()) })
+    }
+
+    /// The motion with the parameters' values.
+    fn found(&self, laws: &Laws) -> Result<Found> {
         let Read { model, said, .. } = self.subject.read(laws)?;
         let values = self.values(&model)?;
         let times = times(&model);
@@ -41,20 +84,8 @@ impl Arguments {
         let states = model.motion(&values, &times).map_err(no_flow)?;
         let rest = model.rest(&values).map_err(no_flow)?;
         let rest = rest.map(|r| (r.time.value(), r.distance.value()));
-        let mut document = document(&model, &values, &times, &states, rest);
-        said.write_to(&mut document);
-        let document = pretty(&document);
-        let wrote = results.write(|| {
-            let texts = [csv(&times, &states), document.clone()];
-            Ok(files.into_iter().zip(texts).collect())
-        });
-        let text = match self.output.json {
-            true => document,
-            false => {
-                tell(&model, &values, &times, &states, rest) + &said.lines()
-            }
-        };
-        Ok(Answer::from(text).after(wrote))
+        let motion = Motion { times, states, rest };
+        Ok(Found { model, values, motion, said })
     }
 
     /// The parameters' values: those set, the prior's middle for the rest.
@@ -97,6 +128,11 @@ impl Arguments {
     }
 }
 
+fn files(motion: &Motion, document: &str) -> Files {
+    let texts = [csv(motion), document.to_owned()].map(String::into_bytes);
+    FILES.into_iter().map(Into::into).zip(texts).collect()
+}
+
 /// The recording's own times, with t = 0 before them.
 fn times(model: &Assembled) -> Vec<f64> {
     let mut times = vec![0.0];
@@ -106,7 +142,7 @@ fn times(model: &Assembled) -> Vec<f64> {
     times
 }
 
-fn csv(times: &[f64], states: &[State<Plain>]) -> String {
+fn csv(Motion { times, states, .. }: &Motion) -> String {
     let mut text = String::from("t,velocity,distance,acceleration\n");
     for (t, s) in times.iter().zip(states) {
         text.push_str(&format!(
@@ -122,9 +158,7 @@ fn csv(times: &[f64], states: &[State<Plain>]) -> String {
 fn document(
     model: &Assembled,
     values: &[f64],
-    times: &[f64],
-    states: &[State<Plain>],
-    rest: Option<(f64, f64)>,
+    Motion { times, states, rest }: &Motion,
 ) -> serde_json::Value {
     let parameters: serde_json::Map<String, serde_json::Value> = model
         .priors()
@@ -155,9 +189,7 @@ const ROWS: usize = 40;
 fn tell(
     model: &Assembled,
     values: &[f64],
-    times: &[f64],
-    states: &[State<Plain>],
-    rest: Option<(f64, f64)>,
+    Motion { times, states, rest }: &Motion,
 ) -> String {
     let set: Vec<String> = model
         .priors()

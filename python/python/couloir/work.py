@@ -1,0 +1,59 @@
+"""From Python's arguments to the command's words, and to what it makes."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping, Sequence
+from os import PathLike, fspath
+from pathlib import Path
+
+from couloir import _couloir
+from couloir.event import Event
+from couloir.progress import Line
+
+Subject = str | PathLike[str] | Event
+
+
+def work(
+    command: str,
+    options: Mapping[str, object],
+    subjects: Sequence[Subject],
+    quiet: bool = True,
+) -> _couloir.Made:
+    """What the command makes of events with these options."""
+    line = None if quiet else Line()
+    try:
+        with tempfile.TemporaryDirectory(prefix="couloir-") as folder:
+            paths = [
+                _path(one, Path(folder) / f"event-{i}")
+                for i, one in enumerate(subjects)
+            ]
+            words = [command, *_words(options), "--", *paths]
+            return _couloir.made(words, line)
+    finally:
+        if line is not None:
+            line.end()
+
+
+def _path(subject: Subject, folder: Path) -> str:
+    """Where an event is, which one of arrays is written for."""
+    if isinstance(subject, Event):
+        subject.save(folder)
+        return str(folder)
+    return fspath(subject)
+
+
+def _words(options: Mapping[str, object]) -> list[str]:
+    """Options as the command has them: `check_rate=True` is `--check-rate`,
+    and a mapping is as many words as it has entries.
+    """
+    words = []
+    for name, value in options.items():
+        option = f"--{name.replace('_', '-')}"
+        if isinstance(value, Mapping):
+            words += [f"{option}={k}={v}" for k, v in value.items()]
+        elif value is True:
+            words.append(option)
+        elif value is not None and value is not False:
+            words.append(f"{option}={value}")
+    return words
