@@ -277,25 +277,18 @@ pub(super) fn diagnosis() -> Diagnosis {
             ..Baseline::default()
         },
         verdict: Verdict::MissingPhysics,
-        origin: crate::report::Origin::default(),
         seed: 1,
-        weak: false,
-        quick: false,
         mismatch: vec![mismatch()],
         mechanisms: mechanisms(),
         noise: noises(),
         selected: vec!["friction-patch".to_owned()],
         selected_noise: "iid".to_owned(),
         group: vec!["friction-patch".to_owned()],
-        rivals: vec![],
         improvement: improvement(),
-        separating: None,
         parameters: parameters(),
         law: law(),
         rest: Some(Rest { specific_force_sd: 0.05, specific_force_q95: 0.12 }),
-        left: None,
         corrected: corrected(),
-        draws: None,
         forces: vec![
             force(Axis::Place, 260.0, 160.0, 44.0),
             force(Axis::Time, 18.0, 9.4, 41.5),
@@ -303,9 +296,7 @@ pub(super) fn diagnosis() -> Diagnosis {
         ],
         pictured: vec![pictured()],
         seconds: 6.2,
-        warnings: vec![],
-        notes: vec![],
-        doubts: vec![],
+        ..Diagnosis::default()
     }
 }
 

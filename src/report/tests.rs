@@ -81,7 +81,10 @@ fn one_value_and_one_parameter() {
     let report = small();
     no_broken_number(&report);
     let names: Vec<_> = pictures(&report).iter().map(|p| p.name).collect();
-    assert_eq!(names, ["recording", "densities", "traces", "residuals"]);
+    assert_eq!(
+        names,
+        ["recording", "densities", "traces", "ranks", "residuals"]
+    );
 }
 
 #[test]

@@ -93,6 +93,7 @@ async function sameFigures(page, { json }) {
 async function reads(page) {
   const panel = page.locator("#recording .panel:visible, #recording-0 .panel:visible").first();
   const output = page.locator("output.reading:visible").first();
+  await panel.scrollIntoViewIfNeeded();
   const box = await panel.boundingBox();
   const svg = await panel.evaluate((p) => [p.dataset.x, p.dataset.across]);
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);

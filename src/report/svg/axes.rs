@@ -129,12 +129,14 @@ impl Axes {
             canvas.text((left - 6.0, y + 4.5), Anchor::End, GREY, &label);
         }
         let x = (left - widest - 16.0).max(FONT);
-        canvas.upwards((x, 0.5 * (top + bottom)), INK, name);
+        if !name.is_empty() {
+            canvas.upwards((x, 0.5 * (top + bottom)), INK, name);
+        }
     }
 
     fn draw_x(&self, canvas: &mut Canvas, name: &str) {
         let Frame { bottom, .. } = self.frame;
-        let mut free = f64::NEG_INFINITY;
+        let mut free = 3.0;
         for (value, label) in self.x_ticks() {
             let x = self.at(value, 0.0).0;
             let label = label.replace('-', "−");
