@@ -59,7 +59,8 @@ pub struct Thinned {
 
 impl Thinned {
     /// Whether there are fewer values than there were.
-    pub(crate) fn is_less(&self) -> bool {
+    #[must_use]
+    pub fn is_less(&self) -> bool {
         self.to < self.from
     }
 }
@@ -137,6 +138,7 @@ impl Event {
     ///     .build()?;
     /// let (thin, said) = event.thinned(1.0, Thinning::Average)?;
     /// assert_eq!(thin.velocity.values(), [2.5, 6.5]);
+    /// assert!(said[0].is_less());
     /// assert!(said[0].to_string().contains("from 8 values"));
     /// # Ok::<(), couloir::Error>(())
     /// ```
