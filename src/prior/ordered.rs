@@ -16,7 +16,8 @@ use crate::seed::Rng;
 /// use couloir::prior::{Distribution, Joint, Normal, Ordered};
 /// use couloir::scalar::{Plain, Real};
 /// let two = Ordered::<Plain, _>::new(Normal::new(0.0, 1.0));
-/// let second = two.next(2, &[Real::new(1.0)]);
+/// let first = [Real::new(1.0)];
+/// let second = two.next(2, &first);
 /// assert_eq!(second.log_density(Real::new(0.5)).value(), f64::NEG_INFINITY);
 /// ```
 #[derive(Debug, Clone, Copy)]
