@@ -22,6 +22,6 @@ mod _couloir {
     /// Runs the command with these words behind its name; its exit code.
     #[pyfunction]
     fn command(py: Python<'_>, words: Vec<OsString>) -> u8 {
-        py.detach(|| couloir::cli::run(&Laws::default(), &words))
+        py.detach(move || couloir::cli::run(&Laws::default(), &words))
     }
 }

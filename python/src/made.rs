@@ -45,7 +45,7 @@ impl Made {
 
     /// Writes the files into a folder, as the command does with `--out`.
     fn write(&self, py: Python<'_>, folder: PathBuf) -> PyResult<()> {
-        py.detach(|| self.0.write(&folder)).map_err(|e| exception(&e))
+        py.detach(move || self.0.write(&folder)).map_err(|e| exception(&e))
     }
 
     /// The groups of its InferenceData: name, attributes and variables.
