@@ -12,7 +12,7 @@ use crate::mechanism::Role;
 use crate::model::{Assembled, Point, Posterior};
 use crate::observe::Series;
 use crate::physics::State;
-use crate::predict::{Bands, posterior_predictive, prior_predictive};
+use crate::predict::{Bands, posterior_checked, prior_predictive};
 use crate::prior::{AnyPrior, Distribution};
 use crate::report::text::is_synthetic;
 use crate::report::{
@@ -63,22 +63,24 @@ pub fn calibrate(
         let seed = root.child(2);
         add_evidence(&mut found, &posterior, &draws, seed, progress)?;
     }
+    let simulations = posterior.cost().simulations;
     progress.begin("predicting", None);
     let series = recording(model)?;
+    let (bands, statistics) =
+        posterior_checked(&posterior, &draws, series, root.child(3))?;
     let times = series.times();
-    let predicted =
-        posterior_predictive(&posterior, &draws, times, root.child(3))?;
     let prior = prior_predictive(&posterior, 1000, times, root.child(4)).ok();
     let mut report = CalibrationReport {
         backend: backend.name().to_owned(),
         seed,
         parameters: parameters(model, &draws, &summaries, mode.as_ref()),
-        simulations: posterior.cost().simulations,
+        simulations,
         prior_bands: prior,
+        statistics,
         ..of_model(model)
     };
     tell_run(&mut report, found, &draws);
-    tell_recording(&mut report, series, predicted);
+    tell_recording(&mut report, series, bands);
     check_fit(&mut report, &posterior, series, &median)?;
     report.checks.kolmogorov_smirnov_p = chains_alike(&draws);
     report.track = track(model, &median)?;

@@ -11,6 +11,7 @@ use std::fmt;
 pub struct Error {
     kind: Kind,
     message: String,
+    page: Option<&'static str>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,19 +25,23 @@ enum Kind {
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 impl Error {
+    fn new(kind: Kind, message: String) -> Self {
+        Self { kind, message, page: None }
+    }
+
     /// Input that somebody has to mend: a file, a key, an argument.
     pub fn input(message: impl Into<String>) -> Self {
-        Self { kind: Kind::Input, message: message.into() }
+        Self::new(Kind::Input, message.into())
     }
 
     /// An inference that could not be carried out as asked.
     pub fn inference(message: impl Into<String>) -> Self {
-        Self { kind: Kind::Inference, message: message.into() }
+        Self::new(Kind::Inference, message.into())
     }
 
     /// The machine refused: a file could not be written, say.
     pub fn system(message: impl Into<String>) -> Self {
-        Self { kind: Kind::System, message: message.into() }
+        Self::new(Kind::System, message.into())
     }
 
     /// The same error with the place put before its message.
@@ -44,6 +49,26 @@ impl Error {
     pub fn within(mut self, place: impl fmt::Display) -> Self {
         self.message = format!("{place}: {}", self.message);
         self
+    }
+
+    /// The same error with the page of the manual that helps, where none is
+    /// named yet.
+    #[must_use]
+    pub(crate) fn on_page(mut self, page: &'static str) -> Self {
+        self.page = self.page.or(Some(page));
+        self
+    }
+
+    /// The page of the manual that helps, where there is one: `formats` is
+    /// `manual/src/formats.md`.
+    ///
+    /// ```
+    /// use couloir::prior::AnyPrior;
+    /// let error = AnyPrior::parse("Gama(9, 0.03)").unwrap_err();
+    /// assert_eq!(error.page(), Some("reference/priors"));
+    /// ```
+    pub fn page(&self) -> Option<&'static str> {
+        self.page
     }
 
     /// Whether the input has to be mended.

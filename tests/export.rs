@@ -9,6 +9,7 @@ use std::process::{Command, Output};
 use couloir::draws::{Draws, quantile};
 use couloir::export::{InferenceData, Scope, gather, of_draws};
 use couloir::prelude::*;
+use serde_json::Value;
 
 model! {
     /// Values about a centre: everything is known in closed form.
@@ -154,12 +155,15 @@ model! {
 }
 
 fn couloir(folder: &Path, options: &[&str]) -> Output {
+    let work = ["--draws", "500", "--warmup", "500", "--chains", "2"];
+    run("calibrate", folder, &[&work, options].concat())
+}
+
+fn run(command: &str, folder: &Path, options: &[&str]) -> Output {
     const EVENT: &str =
         concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/voellmy-21");
-    let work = ["--draws", "500", "--warmup", "500", "--chains", "2"];
     Command::new(env!("CARGO_BIN_EXE_couloir"))
-        .args(["calibrate", EVENT, "--noise", "ar(2)"])
-        .args(work)
+        .args([command, EVENT, "--noise", "ar(2)"])
         .arg("--out")
         .arg(folder)
         .args(options)
@@ -189,6 +193,55 @@ fn formats_are_written_as_asked_and_those_of_an_earlier_run_go() {
     assert!(output.status.success(), "{}", said(&output));
     assert!(!there("table.tex") && there("draws.csv"));
     assert!(there("calibration.json") && there("report.html"));
+}
+
+#[test]
+fn a_diagnosis_is_written_in_the_formats_asked_for() {
+    let folder = fresh("diagnosis");
+    let asked = ["--quick", "--figures", "--format", "csv,latex"];
+    let output = run("diagnose", &folder, &asked);
+    assert!(output.status.success(), "{}", said(&output));
+    let read =
+        |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
+    let json: Value = serde_json::from_str(&read("diagnosis.json")).unwrap();
+    let named = json["parameters"].as_object().unwrap();
+    let (draws, table) = (read("draws.csv"), read("table.tex"));
+    let header = draws.lines().next().unwrap();
+    assert!(named.contains_key("mu"), "{named:?}");
+    for name in named.keys() {
+        assert!(header.split(',').any(|column| column == name), "{header}");
+    }
+    assert_eq!(
+        table.matches(r" \\").count(),
+        1 + header.split(',').count() - 2
+    );
+    let picture = |name: &str| folder.join("pictures").join(name).exists();
+    assert!(picture("recording-0.svg"));
+    assert_eq!(picture("recording-0.png"), cfg!(feature = "export"));
+}
+
+#[test]
+fn every_picture_of_a_calibration_is_a_file() {
+    let folder = fresh("figures");
+    let output = couloir(&folder, &["--figures"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let page = std::fs::read_to_string(folder.join("report.html")).unwrap();
+    let ids = page.split("<figure id=\"").skip(1);
+    let ids: Vec<_> = ids.map(|s| s.split('"').next().unwrap()).collect();
+    assert_eq!(ids.len(), 8, "{ids:?}");
+    for name in ids {
+        let file = |end: &str| {
+            let path = folder.join("pictures").join(name);
+            std::fs::read(path.with_extension(end)).ok()
+        };
+        let svg = file("svg").unwrap();
+        assert!(svg.starts_with(b"<svg xmlns="));
+        let drawn = file("png").is_some_and(|b| b.starts_with(b"\x89PNG"));
+        assert_eq!(drawn, cfg!(feature = "export"), "{name}");
+    }
+    let output = couloir(&folder, &[]);
+    assert!(output.status.success(), "{}", said(&output));
+    assert!(!folder.join("pictures").exists());
 }
 
 #[test]

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::answer::{Answer, Strict, pretty, wrapped};
-use super::format::{Formats, gathered};
+use super::figures::{FOLDER, Figures};
+use super::format::{Formats, Results, described};
 use super::made::{Files, Made};
 use super::progress::Told;
 use super::results::Output;
@@ -15,13 +16,14 @@ use super::{Subject, Work, backend_giving, width};
 use crate::averaged::{Open, calibrate_open};
 use crate::calibrate::Calibration;
 use crate::error::Result;
-use crate::export::InferenceData;
+use crate::export::{InferenceData, Scope, gather, of_draws};
 use crate::infer::{Progress, Suited, suited};
-use crate::model::Assembled;
+use crate::model::{Assembled, Posterior};
 use crate::physics::friction::Laws;
 use crate::report::{
-    Origin, calibration_json, in_words, noises, page, picture, table,
+    Origin, calibration_json, in_words, noises, page, picture, pictures, table,
 };
+use crate::seed::Seed;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -51,6 +53,8 @@ pub(super) struct Arguments {
     output: Output,
     #[command(flatten)]
     formats: Formats,
+    #[command(flatten)]
+    figures: Figures,
 }
 
 fn with_draws(name: &str) -> Result<String, String> {
@@ -78,11 +82,15 @@ impl Arguments {
         told: &Told,
         typed: &str,
     ) -> Result<Answer> {
-        let names = [&FILES[..], &self.formats.names()].concat();
+        let mut names = [&FILES[..], &self.formats.names()].concat();
+        names.extend(self.figures.figures.then_some(FOLDER));
         let results = self.output.ready(&names, self.subject.paths())?;
         let Found { found, model } = self.found(laws, told, typed)?;
         told.finish();
-        let data = self.formats.data(&found, &model);
+        let data = match self.formats.have_data() {
+            true => gathered(&found, &model),
+            false => Ok(described(InferenceData::default(), &found.report)),
+        };
         let left_out = data.as_ref().ok();
         let json = self.json(&found, left_out);
         let wrote = data.and_then(|data| {
@@ -154,7 +162,14 @@ impl Arguments {
         let texts = texts.map(String::into_bytes);
         let names = FILES.into_iter().map(PathBuf::from);
         let mut files: Files = names.zip(texts).collect();
-        files.extend(self.formats.files(found, data)?);
+        let (draws, report) = (&found.draws, &found.report);
+        files.extend(self.formats.files(&Results { draws, report, data })?);
+        if self.figures.figures {
+            let all = pictures(report).into_iter();
+            let all =
+                all.map(|picture| (picture.name.to_owned(), picture.svg));
+            files.extend(self.figures.files(all)?);
+        }
         Ok(files)
     }
 
@@ -183,6 +198,22 @@ impl Arguments {
         found.report.warnings.splice(..0, said.warnings);
         Ok(Found { found, model })
     }
+}
+
+/// The draws with what they say of the data.
+///
+/// Draws averaged over noises are of no single model, and stay alone.
+fn gathered(found: &Calibration, model: &Assembled) -> Result<InferenceData> {
+    let draws = &found.draws;
+    let data = match found.report.noises.is_empty() {
+        false => of_draws(draws, &[])?,
+        true => {
+            let posterior = Posterior::new(model)?;
+            let seed = Seed::new(found.report.seed).called("export");
+            gather(&posterior, draws, &Scope::default(), seed)?
+        }
+    };
+    Ok(described(data, &found.report))
 }
 
 fn tell(found: &Calibration) -> String {

@@ -2,12 +2,14 @@
 //! left out.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use serde_json::Value;
 
 use super::answer::{Answer, Strict, pretty};
+use super::figures::{FOLDER, Figures};
+use super::format::{Formats, Results, described};
 use super::made::{Files, Made};
 use super::progress::Told;
 use super::results::Output;
@@ -15,16 +17,18 @@ use super::said::Said;
 use super::study::Read;
 use super::thin::Thin;
 use super::{Subject, width};
+use crate::calibrate::of_summary;
 use crate::diagnosis::{
     Diagnosis, Odds, Options, Sharing, Together, diagnose, diagnose_together,
     page, pictures, summary,
 };
+use crate::draws::{Draws, summarise};
 use crate::error::{Error, Result};
 use crate::export::{InferenceData, of_draws};
-use crate::infer::Progress;
+use crate::infer::{Backend, LaplaceMixture, Progress};
 use crate::model::Assembled;
 use crate::physics::friction::Laws;
-use crate::report::Origin;
+use crate::report::{CalibrationReport, Origin};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -67,6 +71,10 @@ pub(super) struct Arguments {
     strict: Strict,
     #[command(flatten)]
     output: Output,
+    #[command(flatten)]
+    formats: Formats,
+    #[command(flatten)]
+    figures: Figures,
 }
 
 fn odds(text: &str) -> Result<(String, f64), String> {
@@ -80,12 +88,12 @@ fn odds(text: &str) -> Result<(String, f64), String> {
     }
 }
 
-/// The folder of the events with what was found, within that of the results.
-const CORRECTED: &str = "corrected";
+/// The folder of the events with what was found, within that of the results,
+/// where there is something to correct.
+const CORRECTED: &str = "corrected/";
 
-/// What a diagnosis writes; the last where there is something to correct.
-const FILES: [&str; 5] =
-    ["report.html", "diagnosis.json", "draws.csv", "pictures/", "corrected/"];
+/// What a diagnosis writes in any case.
+const FILES: [&str; 2] = ["report.html", "diagnosis.json"];
 
 /// A diagnosis with what it is of.
 struct Found {
@@ -102,18 +110,20 @@ impl Arguments {
         typed: &str,
     ) -> Result<Answer> {
         let subjects = self.subjects(&self.thin.quickly(self.quick));
-        let results = self.output.ready(&FILES, &self.events)?;
+        let mut names =
+            [&FILES[..], &self.formats.names(), &[FOLDER, CORRECTED]].concat();
+        let results = self.output.ready(&names, &self.events)?;
         let Found { mut found, labels } = self.found(&subjects, laws, told)?;
         found.origin.command = typed.to_owned();
         told.finish();
         let json = found.json();
-        let mut names = FILES.to_vec();
         let wrote = results.write(|| {
             let again = corrected(&subjects, &labels, &found, laws)?;
             if again.is_empty() {
                 names.pop();
             }
-            let mut files = reports(&found, &json);
+            let data = draws_of(&found, &labels)?;
+            let mut files = self.reports(&found, &json, &data)?;
             files.extend(again);
             Ok(files)
         });
@@ -138,13 +148,34 @@ impl Arguments {
         let Found { mut found, labels } =
             self.found(&subjects, laws, progress)?;
         found.origin.command = typed.to_owned();
-        let mut files = reports(&found, &found.json());
+        let data = draws_of(&found, &labels);
+        let none = InferenceData::default();
+        let mut files = self.reports(
+            &found,
+            &found.json(),
+            data.as_ref().unwrap_or(&none),
+        )?;
         files.extend(corrected(&subjects, &labels, &found, laws)?);
-        let data = match &found.draws {
-            Some(draws) => of_draws(draws, &labels),
-            None => Ok(InferenceData::default()),
-        };
         Ok(Made { files, data })
+    }
+
+    fn reports(
+        &self,
+        found: &Diagnosis,
+        json: &Value,
+        data: &InferenceData,
+    ) -> Result<Files> {
+        let texts =
+            [("report.html", page(found)), ("diagnosis.json", pretty(json))];
+        let mut files: Files =
+            texts.map(|(name, text)| (name.into(), text.into_bytes())).into();
+        if let Some(draws) = &found.draws {
+            let report = &corrected_report(found, draws);
+            let results = Results { draws, report, data };
+            files.extend(self.formats.files(&results)?);
+        }
+        files.extend(self.figures.files(pictures(found))?);
+        Ok(files)
     }
 
     /// The diagnosis of the events and, where that was asked for, what
@@ -245,16 +276,26 @@ fn inputs(
     sums.into_iter().enumerate().flat_map(labelled).collect()
 }
 
-fn reports(found: &Diagnosis, json: &Value) -> Files {
-    let mut files = vec![
-        (PathBuf::from("diagnosis.json"), pretty(json)),
-        ("report.html".into(), page(found)),
-    ];
-    files.extend(found.draws.iter().map(|d| ("draws.csv".into(), d.to_csv())));
-    let folder = Path::new("pictures");
-    let pictures = pictures(found).into_iter();
-    files.extend(pictures.map(|(name, svg)| (folder.join(name), svg)));
-    files.into_iter().map(|(name, text)| (name, text.into())).collect()
+/// The draws of the corrected model; without a group where there are none.
+fn draws_of(found: &Diagnosis, labels: &[String]) -> Result<InferenceData> {
+    let Some(draws) = &found.draws else {
+        return Ok(InferenceData::default());
+    };
+    Ok(described(of_draws(draws, labels)?, &corrected_report(found, draws)))
+}
+
+/// The corrected model's figures, as those of a calibration are told.
+fn corrected_report(found: &Diagnosis, draws: &Draws) -> CalibrationReport {
+    let mut report = CalibrationReport::default();
+    report.origin = found.origin.clone();
+    report.event = found.event.clone();
+    report.friction = found.baseline.friction.clone();
+    report.noise = found.selected_noise.clone();
+    report.mechanisms = found.corrected.labels.clone();
+    report.backend = LaplaceMixture::default().name().to_owned();
+    report.seed = found.seed;
+    report.parameters = summarise(draws).iter().map(of_summary).collect();
+    report
 }
 
 /// The events again, with the mechanisms that were found, each in a folder of

@@ -1,4 +1,4 @@
-//! `--format`: in which formats a calibration writes its draws and figures.
+//! `--format`: in which formats draws and figures are written.
 
 use std::path::PathBuf;
 
@@ -6,14 +6,12 @@ use clap::Args;
 use serde_json::json;
 
 use super::made::Files;
-use crate::calibrate::Calibration;
+use crate::draws::Draws;
 use crate::error::Result;
-use crate::export::{InferenceData, Scope, gather, latex, of_draws};
+use crate::export::{InferenceData, latex};
 #[cfg(feature = "export")]
 use crate::export::{parquet, zarr};
-use crate::model::{Assembled, Posterior};
-use crate::report::PROGRAM;
-use crate::seed::Seed;
+use crate::report::{CalibrationReport, PROGRAM};
 
 /// A format of what is written beside the report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,8 +85,8 @@ pub(super) struct Formats {
     /// What to write beside the report, with commas between: csv (draws.csv),
     /// latex (table.tex, a table of the parameters) and, where built with the
     /// feature export, parquet (draws.parquet) and zarr (draws.zarr, ArviZ's
-    /// InferenceData: draws, log likelihood of each value, predictions before
-    /// and after, recording; calibration.json then has loo, too)
+    /// InferenceData; of a calibration with log likelihood of each value,
+    /// predictions before and after, recording, and loo in calibration.json)
     #[arg(long = "format", value_name = "FORMATS", requires = "out",
           value_parser = named, value_delimiter = ',', default_value = "csv")]
     formats: Vec<Format>,
@@ -105,76 +103,49 @@ impl Formats {
         all.filter(|format| self.formats.contains(format))
     }
 
-    /// The draws with what they say of the data, where a format has that.
-    pub(super) fn data(
-        &self,
-        found: &Calibration,
-        model: &Assembled,
-    ) -> Result<InferenceData> {
-        match self.asked().any(Format::has_data) {
-            true => gathered(found, model),
-            false => Ok(described(InferenceData::default(), found)),
-        }
+    /// Whether a format has what the draws say of the data.
+    pub(super) fn have_data(&self) -> bool {
+        self.asked().any(Format::has_data)
     }
 
     /// The files in these formats.
-    pub(super) fn files(
-        &self,
-        found: &Calibration,
-        data: &InferenceData,
-    ) -> Result<Files> {
+    pub(super) fn files(&self, of: &Results<'_>) -> Result<Files> {
         let mut files = Files::new();
         for format in self.asked() {
             let path = PathBuf::from(format.file());
-            match format {
-                Format::Csv => {
-                    files.push((path, found.draws.to_csv().into_bytes()));
-                }
-                Format::Latex => {
-                    files.push((path, latex(&found.report).into_bytes()));
-                }
+            let one = |bytes| vec![(path.clone(), bytes)];
+            files.extend(match format {
+                Format::Csv => one(of.draws.to_csv().into_bytes()),
+                Format::Latex => one(latex(of.report).into_bytes()),
                 #[cfg(feature = "export")]
                 Format::Parquet => {
-                    files.push((
-                        path,
-                        parquet(&found.draws, &data.attributes)?,
-                    ));
+                    one(parquet(of.draws, &of.data.attributes)?)
                 }
                 #[cfg(feature = "export")]
                 Format::Zarr => {
-                    let all = zarr(data)?.into_iter();
-                    files.extend(all.map(|(n, bytes)| (path.join(n), bytes)));
+                    let all = zarr(of.data)?.into_iter();
+                    all.map(|(n, bytes)| (path.join(n), bytes)).collect()
                 }
-            }
+            });
         }
         #[cfg(not(feature = "export"))]
-        let _ = data;
+        let _ = of.data;
         Ok(files)
     }
 }
 
-/// The draws with what they say of the data.
-///
-/// Draws averaged over noises are of no single model, and stay alone.
-pub(super) fn gathered(
-    found: &Calibration,
-    model: &Assembled,
-) -> Result<InferenceData> {
-    let draws = &found.draws;
-    let data = match found.report.noises.is_empty() {
-        false => of_draws(draws, &[])?,
-        true => {
-            let posterior = Posterior::new(model)?;
-            let seed = Seed::new(found.report.seed).called("export");
-            gather(&posterior, draws, &Scope::default(), seed)?
-        }
-    };
-    Ok(described(data, found))
+/// What the formats are written from.
+pub(super) struct Results<'a> {
+    pub(super) draws: &'a Draws,
+    pub(super) report: &'a CalibrationReport,
+    pub(super) data: &'a InferenceData,
 }
 
 /// What was run, on what, and how, as attributes.
-fn described(data: InferenceData, found: &Calibration) -> InferenceData {
-    let report = &found.report;
+pub(super) fn described(
+    data: InferenceData,
+    report: &CalibrationReport,
+) -> InferenceData {
     let noise = match report.noises.first() {
         None => report.noise.clone(),
         Some(_) => "infer".to_owned(),

@@ -11,6 +11,7 @@ mod compare;
 mod completions;
 mod diagnose;
 mod examples;
+mod figures;
 mod format;
 #[cfg(feature = "import")]
 mod import;
@@ -266,9 +267,11 @@ fn parsed(
     Cli::from_arg_matches(&matches)
 }
 
-/// Tells an error; the exit code says whether the input is to be mended.
+/// Tells an error, with the manual's page that helps; the exit code says
+/// whether the input is to be mended.
 fn refuse(error: &Error) -> u8 {
-    complain(&error.to_string());
+    let page = error.page().map(|page| format!(" (manual: {page}.md)"));
+    complain(&format!("{error}{}", page.unwrap_or_default()));
     if error.is_input() { 2 } else { 1 }
 }
 

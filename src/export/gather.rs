@@ -146,7 +146,7 @@ fn recorded(
     for row in draws.rows() {
         let mut heard = Data::default();
         let point = Point::Natural(row);
-        let density = posterior.model().evaluate(point, Some(&mut heard))?;
+        let density = posterior.hear(point, &mut heard)?;
         if density.rejected.is_none() {
             return Ok(heard.all());
         }

@@ -86,7 +86,7 @@ pub(super) fn hear(
         Origin::Row(row) => Point::Natural(row),
         Origin::Prior => Point::Prior(&mut prior),
     };
-    let density = posterior.model().evaluate(point, Some(&mut ear))?;
+    let density = posterior.hear(point, &mut ear)?;
     if density.rejected.is_some() {
         return Ok(None);
     }

@@ -22,13 +22,14 @@ use crate::report::{CalibrationReport, PROGRAM, ParameterReport};
 pub fn latex(report: &CalibrationReport) -> String {
     let rows: String = report.parameters.iter().map(row).collect();
     let (event, friction) = (text(&report.event), text(&report.friction));
+    let terms = text(&report.terms());
     let (noise, backend) = (text(report.errors_told()), text(&report.backend));
     let seed = report.seed;
     format!(
         r"% Written by {PROGRAM}. Needs \usepackage{{booktabs}}.
 \begin{{table}}
 \centering
-\caption{{Posterior of {event}: {friction} friction, {noise} errors
+\caption{{Posterior of {event}: {friction} friction, {noise} errors{terms}
 ({backend}, seed {seed}). Mean, standard deviation, 90\,\% interval,
 $\widehat{{R}}$, and effective sample size of bulk and tails.}}
 \label{{tab:couloir}}

@@ -1,6 +1,6 @@
 //! What leaves the program for others: draws with what they say of the data,
 //! as ArviZ's InferenceData in Zarr; the draws as Parquet; the figures as a
-//! table in LaTeX.
+//! table in LaTeX; pictures as PNG.
 //!
 //! [`gather`] makes one plain structure of a posterior and its draws,
 //! [`InferenceData`]: groups of named arrays, named as ArviZ names them
@@ -66,6 +66,8 @@ mod latex;
 mod left_out;
 #[cfg(feature = "export")]
 mod parquet;
+#[cfg(feature = "export")]
+mod png;
 mod recorded;
 mod table;
 mod vector;
@@ -77,5 +79,7 @@ pub use gather::{MOST_NUMBERS, PRIOR_DRAWS, Scope, gather, of_draws};
 pub use latex::latex;
 #[cfg(feature = "export")]
 pub use parquet::parquet;
+#[cfg(feature = "export")]
+pub use png::png;
 #[cfg(feature = "export")]
 pub use zarr::zarr;

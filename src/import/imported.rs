@@ -53,7 +53,7 @@ pub struct Imported {
 /// belong together; its message names the file and the line, what was found,
 /// what was expected, and the mend.
 pub fn import(options: &Options) -> Result<Imported> {
-    let case = work_out(options)?;
+    let case = work_out(options).map_err(|e| e.on_page("event"))?;
     let lines = |all: Vec<String>| -> Vec<String> {
         all.iter().map(|text| plain(text)).collect()
     };

@@ -21,7 +21,7 @@ pub fn kept(
 ) -> Result<Option<Draws>> {
     let first = draws.row(0, 0);
     let mut kept = Kept::new(seed);
-    posterior.model().evaluate(Point::Natural(first), Some(&mut kept))?;
+    posterior.hear(Point::Natural(first), &mut kept)?;
     let names = kept.names;
     if names.is_empty() {
         return Ok(None);

@@ -66,6 +66,10 @@ pub struct EventFile {
 /// message is one line that names the file, the line or key, what was found,
 /// what was expected, and the mend.
 pub fn load(path: &Path, laws: &Laws) -> Result<EventFile> {
+    read(path, laws).map_err(|error| error.on_page("formats"))
+}
+
+fn read(path: &Path, laws: &Laws) -> Result<EventFile> {
     let file = find(path)?;
     let text = source::read_text(&file, MOST_BYTES)?;
     let folder = file.parent().unwrap_or(Path::new(""));

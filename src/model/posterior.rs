@@ -211,14 +211,18 @@ impl<'m> Posterior<'m> {
     /// # Errors
     /// As [`Posterior::density`].
     pub fn natural(&self, z: &[f64]) -> Result<Vec<f64>> {
-        self.places(Point::Line(z)).map(|found| found.natural)
+        self.places(Point::Line(z), false).map(|(_, found)| found.natural)
     }
 
-    fn places(&self, point: Point<'_>) -> Result<Places> {
+    fn places(
+        &self,
+        point: Point<'_>,
+        hears_names: bool,
+    ) -> Result<(Density, Places)> {
         let count = self.dimension();
-        let mut places = Places { count, ..Places::default() };
-        self.model.evaluate(point, Some(&mut places))?;
-        Ok(places)
+        let mut places = Places { count, hears_names, ..Places::default() };
+        let density = self.model.evaluate(point, Some(&mut places))?;
+        Ok((density, places))
     }
 
     /// The place on the real line of given values.
@@ -233,7 +237,7 @@ impl<'m> Posterior<'m> {
                 self.dimension()
             )));
         }
-        let found = self.places(Point::Natural(x))?;
+        let (_, found) = self.places(Point::Natural(x), false)?;
         let outside = (0..x.len())
             .find(|&i| !found.line.get(i).is_some_and(|z| z.is_finite()));
         match outside {
@@ -263,15 +267,11 @@ impl<'m> Posterior<'m> {
         &self,
         rng: &mut Rng,
     ) -> Result<Option<Vec<f64>>> {
-        let count = self.dimension();
-        let mut found =
-            Places { count, hears_names: true, ..Places::default() };
-        let density =
-            self.model.evaluate(Point::Prior(rng), Some(&mut found))?;
+        let (density, found) = self.places(Point::Prior(rng), true)?;
         self.check_names(&found.names, &density)?;
         let line = found.line;
-        let is_whole =
-            line.len() == count && line.iter().all(|z| z.is_finite());
+        let is_whole = line.len() == self.dimension()
+            && line.iter().all(|z| z.is_finite());
         Ok(is_whole.then_some(line))
     }
 

@@ -216,6 +216,10 @@ pub fn names() -> Vec<String> {
 /// # Errors
 /// A name that is not known, a sum of what does not add up.
 pub fn parse(text: &str) -> crate::Result<Box<dyn NoiseEntry>> {
+    summed(text).map_err(|error| error.on_page("reference/noises"))
+}
+
+fn summed(text: &str) -> crate::Result<Box<dyn NoiseEntry>> {
     let terms: Vec<&str> = text.split('+').map(str::trim).collect();
     if let [term] = terms[..] {
         let (noise, entry) = block(term)?;

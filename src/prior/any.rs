@@ -172,7 +172,10 @@ impl AnyPrior {
     /// assert!(error.to_string().contains("did you mean \"Gamma\"?"));
     /// ```
     pub fn parse(text: &str) -> Result<Self> {
-        read(text).map_err(|e| e.within(format_args!("prior \"{text}\"")))
+        read(text).map_err(|e| {
+            e.within(format_args!("prior \"{text}\""))
+                .on_page("reference/priors")
+        })
     }
 
     /// Whether the density has an integral: all but `Flat()`.

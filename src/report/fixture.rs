@@ -47,6 +47,12 @@ pub(super) fn calibration() -> CalibrationReport {
         standard_errors: Some(vec![0.8; 40]),
         bands: bands(&times, 0.06, 4.2),
         prior_bands: Some(bands(&times, 0.5, 9.0)),
+        statistics: vec![Statistic {
+            name: "largest value",
+            unit: "m/s".to_owned(),
+            recorded: 21.0,
+            replicated: (0..400).map(|i| 18.0 + 0.01 * f64::from(i)).collect(),
+        }],
         track: track(),
         autocorrelation: autocorrelation(&innovations),
         innovations,

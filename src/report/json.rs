@@ -7,6 +7,7 @@ use super::{
     ParameterReport,
 };
 use crate::noise::Form;
+use crate::predict::Statistic;
 
 /// `calibration.json`, schema 1; numbers that are not finite are null.
 ///
@@ -39,6 +40,8 @@ pub fn calibration_json(report: &CalibrationReport) -> Value {
         "parameters": parameters,
         "log_evidence": report.evidence.as_ref().map(evidence),
         "checks": checks(&report.checks),
+        "predictive":
+            report.statistics.iter().map(statistic).collect::<Vec<_>>(),
         "notes": report.notes,
         "simulations": report.simulations,
         "warnings": report.warnings,
@@ -105,6 +108,15 @@ fn figures(parameters: &[ParameterReport]) -> Value {
         (p.name.clone(), value)
     };
     Value::Object(parameters.iter().map(one).collect())
+}
+
+/// A figure of the recording beside those of its replicates.
+fn statistic(s: &Statistic) -> Value {
+    json!({
+        "name": s.name, "unit": s.unit, "recorded": s.recorded,
+        "q05": s.quantile(0.05), "q50": s.quantile(0.5),
+        "q95": s.quantile(0.95), "p": s.p(),
+    })
 }
 
 // serde_json turns numbers that are not finite into null.

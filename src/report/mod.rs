@@ -20,7 +20,7 @@ mod terminal;
 pub(crate) mod text;
 mod words;
 
-pub use crate::predict::Bands;
+pub use crate::predict::{Bands, Statistic};
 pub use json::calibration_json;
 pub(crate) use json::noise_json;
 pub use law::LawReport;
@@ -78,6 +78,8 @@ pub struct CalibrationReport {
     pub standard_errors: Option<Vec<f64>>,
     /// What the posterior predicts.
     pub bands: Bands,
+    /// Figures of the recording beside those of its replicates.
+    pub statistics: Vec<Statistic>,
     /// What the prior predicts.
     pub prior_bands: Option<Bands>,
     /// The terrain and the mass on it.
@@ -131,7 +133,7 @@ impl CalibrationReport {
     }
 
     /// What stands behind "errors" where mechanisms were added.
-    fn terms(&self) -> String {
+    pub(crate) fn terms(&self) -> String {
         match self.mechanisms.is_empty() {
             true => String::new(),
             false => format!(" and {}", self.mechanisms.join(" and ")),

@@ -357,8 +357,8 @@ mod tests {
         assert!(html.contains("<html lang=\"en\">"));
         assert!(html.contains("synthetic data"));
         // Each for a page and for a phone.
-        assert_eq!(html.matches("<svg").count(), 14);
-        assert_eq!(html.matches("<figcaption>").count(), 7);
+        assert_eq!(html.matches("<svg").count(), 16);
+        assert_eq!(html.matches("<figcaption>").count(), 8);
     }
 
     #[test]

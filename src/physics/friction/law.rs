@@ -150,6 +150,7 @@ impl Laws {
                 known.join(", "),
                 mend.unwrap_or_default()
             ))
+            .on_page("reference/laws")
         })
     }
 }

@@ -19,6 +19,7 @@ mod recording;
 mod reliability;
 mod residuals;
 pub(crate) mod series;
+mod statistics;
 mod traces;
 mod track;
 
@@ -57,7 +58,7 @@ pub struct Picture {
 /// ```
 pub fn pictures(report: &CalibrationReport) -> Vec<Picture> {
     type Draw = fn(&CalibrationReport, Sheet) -> Option<Picture>;
-    let all: [Draw; 7] = [
+    let all: [Draw; 8] = [
         recording::draw,
         track::draw,
         densities::draw,
@@ -65,6 +66,7 @@ pub fn pictures(report: &CalibrationReport) -> Vec<Picture> {
         traces::draw,
         ranks::draw,
         residuals::draw,
+        statistics::draw,
     ];
     let both = |draw: Draw| {
         let page = draw(report, Sheet::Page)?;

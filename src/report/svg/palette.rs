@@ -17,6 +17,8 @@ pub(crate) const FLOW: &str = "#7db8dc";
 pub(crate) const FULL: &str = "#d3e7f4";
 /// The mass on its track.
 pub(crate) const MASS: &str = "#d55e00";
+/// A stretch that is marked, as its shade looks on white.
+pub(crate) const MARKED: &str = "#f9e8dc";
 /// One colour a chain, in turn.
 pub(crate) const CHAINS: [&str; 6] =
     ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];

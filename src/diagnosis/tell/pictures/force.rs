@@ -10,7 +10,9 @@ use crate::diagnosis::{Diagnosis, FreeForce};
 use crate::physics::forces::Axis;
 use crate::report::svg::axes::{Axes, Key, Labels, Scale, legend};
 use crate::report::svg::canvas::{Anchor, Canvas, FONT, Frame, Point, Sheet};
-use crate::report::svg::palette::{FULL, GREY, INK, MASS, POSTERIOR, Pen};
+use crate::report::svg::palette::{
+    FULL, GREY, INK, MARKED, MASS, POSTERIOR, Pen,
+};
 use crate::report::svg::series::LOCATED;
 
 const LARGE: f64 = 230.0;
@@ -104,7 +106,7 @@ fn entries(d: &Diagnosis) -> Vec<(Key, &'static str)> {
         (Key::Line(SURE), CLEAR),
     ];
     if !d.mismatch.is_empty() {
-        out.push((Key::Fill("#f9e8dc"), LOCATED));
+        out.push((Key::Fill(MARKED), LOCATED));
     }
     out
 }

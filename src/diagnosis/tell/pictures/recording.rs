@@ -10,7 +10,7 @@ use crate::report::digits::ticks;
 use crate::report::svg::axes::{Axes, Key, Labels, Scale, legend};
 use crate::report::svg::canvas::{Canvas, FONT, Frame, Point, Sheet};
 use crate::report::svg::palette::{
-    FAINT, FLOW, FULL, INK, MASS, POSTERIOR, Pen,
+    FAINT, FLOW, FULL, INK, MARKED, MASS, POSTERIOR, Pen,
 };
 use crate::report::svg::series::{
     FLOWS, LOCATED, MEDIAN_FLOW, RECORDED, WITH_ERRORS, least,
@@ -104,9 +104,6 @@ fn entries(d: &Diagnosis) -> Vec<(Key, &'static str)> {
     }
     out
 }
-
-/// The colour that a shaded stretch has on white.
-const MARKED: &str = "#f9e8dc";
 
 fn legend_height(d: &Diagnosis, sheet: Sheet) -> f64 {
     let lines = match (sheet, d.mismatch.is_empty()) {

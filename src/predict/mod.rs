@@ -1,5 +1,9 @@
 //! What a model predicts: bands of the flow alone and with its errors, and
-//! recordings that it might have led to.
+//! recordings that it might have led to, with figures of them.
+
+mod statistics;
+
+pub use statistics::Statistic;
 
 use rayon::prelude::*;
 
@@ -58,6 +62,27 @@ pub fn posterior_predictive(
         .ok_or_else(|| Error::inference("the model predicts no series"))
 }
 
+/// The same of the model's first recording, with figures of it beside those
+/// of its replicates.
+///
+/// # Errors
+/// As [`posterior_predictive`].
+pub fn posterior_checked(
+    posterior: &Posterior<'_>,
+    draws: &Draws,
+    series: &Series,
+    seed: Seed,
+) -> Result<(Bands, Vec<Statistic>)> {
+    let (times, values) = (series.times(), series.values());
+    let sets = replicates(posterior, draws, times.len(), seed)?;
+    let pairs: Vec<&Pair> =
+        sets.iter().flatten().filter_map(|set| set.first()).collect();
+    let made = pairs.iter().map(|(_, made)| made.as_slice());
+    let unit = series.quantity().unit();
+    let figures = statistics::statistics(times, values, unit, made);
+    Ok((bands(&pairs, times)?, figures))
+}
+
 /// The same of each of the model's series, whose times \[s\] are given.
 ///
 /// # Errors
@@ -69,14 +94,7 @@ pub fn predictive_of_all(
     seed: Seed,
 ) -> Result<Vec<Bands>> {
     let length = times.iter().map(|t| t.len()).sum();
-    let rows = draws.thinned(draws_for(length));
-    let sets = rows
-        .par_iter()
-        .enumerate()
-        .map(|(i, row)| {
-            replicate(posterior, Point::Natural(row), seed.child(i as u64))
-        })
-        .collect::<Result<Vec<_>>>()?;
+    let sets = replicates(posterior, draws, length, seed)?;
     let of = |k: usize| -> Vec<&Pair> {
         sets.iter().flatten().filter_map(|s| s.get(k)).collect()
     };
@@ -108,6 +126,21 @@ pub fn prior_predictive(
     bands(&pairs.iter().flatten().collect::<Vec<_>>(), times)
 }
 
+/// A replicate of each recording, all together of `length` values, at some of
+/// the draws; `None` where the model rejects one.
+fn replicates(
+    posterior: &Posterior<'_>,
+    draws: &Draws,
+    length: usize,
+    seed: Seed,
+) -> Result<Vec<Option<Vec<Pair>>>> {
+    let rows = draws.thinned(draws_for(length));
+    let one = |(i, row): (usize, &&[f64])| {
+        replicate(posterior, Point::Natural(row), seed.child(i as u64))
+    };
+    rows.par_iter().enumerate().map(one).collect()
+}
+
 /// The flow at a point and one replicate of each recording; `None` where the
 /// model rejects the point.
 fn replicate(
@@ -115,11 +148,10 @@ fn replicate(
     point: Point<'_>,
     seed: Seed,
 ) -> Result<Option<Vec<Pair>>> {
-    let model: &dyn Model = posterior.model();
     let mut rng = seed.child(1).rng();
     let mut heard =
         Predicted { flows: Vec::new(), replicates: Replicates::new(&mut rng) };
-    let density = model.evaluate(point, Some(&mut heard))?;
+    let density = posterior.hear(point, &mut heard)?;
     let Predicted { flows, replicates } = heard;
     let pairs = || flows.into_iter().zip(replicates.series).collect();
     Ok(density.rejected.is_none().then(pairs))
