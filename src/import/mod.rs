@@ -16,6 +16,7 @@ mod doubts;
 mod elevations;
 mod esri_grid;
 mod event;
+mod front;
 mod geotiff;
 mod gpx_file;
 mod grid;

@@ -108,18 +108,21 @@ impl Options {
                 )));
             }
         }
-        match (self.logs.len(), &self.front, &self.name) {
-            (0, None, _) => Err(Error::input(
+        let count = self.logs.iter().chain(&self.front).count();
+        if count == 0 {
+            return Err(Error::input(
                 "there is no recording; expected a log, or a front: give the \
                  file of a log, or --front FILE",
-            )),
-            (0 | 1, None, _) | (0, Some(_), _) | (_, _, None) => Ok(()),
-            _ => Err(Error::input(
+            ));
+        }
+        if count > 1 && self.name.is_some() {
+            return Err(Error::input(
                 "--name: is given, and there are several recordings; \
                  expected it with one only: leave it out, and each event is \
                  called as its file",
-            )),
+            ));
         }
+        Ok(())
     }
 }
 

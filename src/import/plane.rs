@@ -36,6 +36,8 @@ pub(super) fn projection(
         "the log has degrees where the terrain model has metres"
     } else if degrees && path == Some(false) {
         "the log has degrees where the path has metres"
+    } else if degrees && metres {
+        "a log has degrees where another has metres"
     } else if metres {
         "the path has degrees where the log has metres"
     } else if options.terrain.is_some() {

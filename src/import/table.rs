@@ -179,12 +179,9 @@ impl<'r> Reader<'r> {
         };
         // Of speeds and of places only those that are used stay.
         let mut found = found;
-        let used = |role, of: Role, used: &[Role]| {
-            !of.rivals().contains(role) || used.contains(role)
-        };
-        found.retain(|role, _| {
-            used(role, Role::Speed, of_speed) && used(role, Role::X, of_place)
-        });
+        let rivals = [Role::Speed.rivals(), Role::X.rivals()].concat();
+        let used = [of_speed, of_place].concat();
+        found.retain(|role, _| !rivals.contains(role) || used.contains(role));
         Ok(Self { path, separator, found, kind, frame })
     }
 
