@@ -158,7 +158,8 @@ fn receiver(case: &Case) -> Option<String> {
     if is_by_positions(case) {
         return None;
     }
-    let level = &case.moving.level[case.moving.phase.first..=case.moving.phase.last];
+    let level =
+        &case.moving.level[case.moving.phase.first..=case.moving.phase.last];
     let by_positions = level
         .iter()
         .zip(case.distances())

@@ -120,7 +120,9 @@ impl Keys {
     /// The code of the projection (ProjectedCSTypeGeoKey); 32767 stands for
     /// one without a code.
     fn projection(&self) -> Option<u32> {
-        self.get(3072).filter(|code| (1024..32767).contains(code)).map(u32::from)
+        self.get(3072)
+            .filter(|code| (1024..32767).contains(code))
+            .map(u32::from)
     }
 
     /// Refuses degrees (GTModelTypeGeoKey) and other units than the metre
@@ -223,7 +225,8 @@ fn elevations(
         DecodingResult::F64(all) => all,
         // No data as the file can have it, which has fewer digits.
         DecodingResult::F32(all) => {
-            let own = |z: &f32| if *z == none as f32 { none } else { (*z).into() };
+            let own =
+                |z: &f32| if *z == none as f32 { none } else { (*z).into() };
             all.iter().map(own).collect()
         }
         DecodingResult::I16(all) => all.into_iter().map(f64::from).collect(),

@@ -77,8 +77,12 @@ impl Options {
     /// The folder of each recording's event, by the names of the files; none
     /// where there is one recording only, whose event needs no folder more.
     pub fn folders(&self) -> Vec<String> {
-        let files: Vec<&Path> =
-            self.logs.iter().chain(&self.front).map(PathBuf::as_path).collect();
+        let files: Vec<&Path> = self
+            .logs
+            .iter()
+            .chain(&self.front)
+            .map(PathBuf::as_path)
+            .collect();
         if files.len() < 2 {
             return Vec::new();
         }

@@ -145,9 +145,12 @@ fn speeds(canvas: &mut Canvas, frame: Frame, case: &Case) {
     let times = case.moving.times();
     let length = times.last().copied().unwrap_or(0.0);
     let around = (0.4 * length).max(5.0);
-    let all = case.moving.log.fixes.iter().zip(&case.moving.speeds).enumerate();
+    let all =
+        case.moving.log.fixes.iter().zip(&case.moving.speeds).enumerate();
     let cut: Vec<_> = all
-        .filter(|(i, _)| !(case.moving.phase.first..=case.moving.phase.last).contains(i))
+        .filter(|(i, _)| {
+            !(case.moving.phase.first..=case.moving.phase.last).contains(i)
+        })
         .map(|(_, (fix, speed))| (fix.time - begin, *speed))
         .filter(|(t, _)| (-around..=length + around).contains(t))
         .collect();

@@ -444,7 +444,7 @@ mod tests {
         assert_eq!(front.fixes[0].place, (2.0, 1.0));
         assert_eq!(front.fixes[0].height, Some(93.0));
         assert_eq!(front.fixes[1].place, (5.0, 5.0));
-        assert!(front.said[1].contains("up to 3"), "{:?}", front.said);
+        assert!(front.said[2].contains("up to 3"), "{:?}", front.said);
         assert!(!front.said[0].contains("\"v\""), "{:?}", front.said);
         // By a distance alone, where it is no sensor.
         let text = "t,s\n0,1\n1,3\n";

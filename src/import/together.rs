@@ -8,7 +8,8 @@ use super::moving::Moving;
 /// it, as sensors in one flow do; nothing otherwise.
 pub(super) fn starts(all: &[Moving]) -> Option<Vec<f64>> {
     let clock = |log: &Log| log.begin.is_clock;
-    let is_one_kind = all.windows(2).all(|w| clock(&w[0].log) == clock(&w[1].log));
+    let is_one_kind =
+        all.windows(2).all(|w| clock(&w[0].log) == clock(&w[1].log));
     let moment = |one: &Moving, time: f64| one.log.begin.seconds + time;
     let begins: Vec<f64> =
         all.iter().map(|one| moment(one, one.begin())).collect();

@@ -84,7 +84,8 @@ fn cases(
         moving.said.push(path);
         moving.said.push(told(options, grid, ground, word));
         let taken = moving.taken();
-        let terrain = |grid: &Grid| taken.iter().map(|p| grid.at(*p)).collect();
+        let terrain =
+            |grid: &Grid| taken.iter().map(|p| grid.at(*p)).collect();
         Case {
             name: names.get(i).cloned().unwrap_or_default(),
             threshold: options.threshold,

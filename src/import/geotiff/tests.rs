@@ -54,7 +54,10 @@ struct More<'m> {
 
 const PLACED: More<'_> = More {
     packed: Compression::Uncompressed,
-    numbers: &[(Tag::ModelPixelScaleTag, &SCALE), (Tag::ModelTiepointTag, &TIE)],
+    numbers: &[
+        (Tag::ModelPixelScaleTag, &SCALE),
+        (Tag::ModelTiepointTag, &TIE),
+    ],
     keys: &[],
     none: Some("-1"),
     metadata: None,
@@ -68,7 +71,8 @@ where
     let mut out = Cursor::new(Vec::new());
     let file = TiffEncoder::new(&mut out).unwrap();
     let mut file = file.with_compression(more.packed);
-    let rows = (cells.len() / 3) as u32;
+    let rows = cells.len() / (3 * K::BITS_PER_SAMPLE.len());
+    let rows = u32::try_from(rows).unwrap();
     let mut image = file.new_image::<K>(3, rows).unwrap();
     let tags = image.encoder();
     for (tag, numbers) in more.numbers {
@@ -126,7 +130,7 @@ fn every_kind_of_number_is_read() {
         same(&read(&written::<GrayI32>(&signed, more)).unwrap(), &wanted);
         let short = signed.map(|z| z as i16);
         same(&read(&written::<GrayI16>(&short, more)).unwrap(), &wanted);
-        let more = More { none: Some("65535\0"), ..more };
+        let more = More { none: Some("65535 "), ..more };
         let short = [1, 2, 3, 4, 6, u16::MAX];
         same(&read(&written::<Gray16>(&short, more)).unwrap(), &wanted);
         let more = More { none: Some("65535"), ..more };
@@ -160,7 +164,8 @@ fn places_are_those_of_the_cells_middles() {
     same(&read(&written::<Float>(&CELLS, more)).unwrap(), &wanted);
     // The elevation is that of the corner's place.
     let keys = [1, 1, 0, 2, 1024, 0, 1, 1, 1025, 0, 1, 2];
-    let found = read(&written::<Float>(&CELLS, More { keys: &keys, ..PLACED }));
+    let found =
+        read(&written::<Float>(&CELLS, More { keys: &keys, ..PLACED }));
     let found = found.unwrap();
     assert_eq!((found.extent.west, found.extent.south), (5.0, 25.0));
     assert_eq!((found.at((5.0, 35.0)), found.epsg), (Some(1.0), None));
@@ -212,7 +217,10 @@ fn what_is_no_terrain_model_is_refused_with_a_mend() {
     let cases = [
         (written::<Float>(&wild, PLACED), "row 2, column 2 is 1000000000000"),
         (written::<colortype::Gray8>(bytes[0], PLACED), "of one byte"),
-        (written::<colortype::RGB8>(bytes[1], PLACED), "is a picture (RGB(8))"),
+        (
+            written::<colortype::RGB8>(bytes[1], PLACED),
+            "is a picture (RGB(8))",
+        ),
         (written::<Float>(&CELLS[..3], PLACED), "has 3 by 1 cells"),
         (b"ncols 3".to_vec(), "is no GeoTIFF that can be read"),
         (Vec::new(), "is no GeoTIFF that can be read"),
@@ -226,12 +234,19 @@ fn what_is_no_terrain_model_is_refused_with_a_mend() {
 /// A size that would take the machine's memory is refused by its number.
 #[test]
 fn a_size_is_bounded_before_there_is_room_for_it() {
-    let mut bytes = written::<Float>(&CELLS, PLACED);
+    let cells = CELLS.map(|z| z as f32);
+    let mut bytes = written::<colortype::Gray32Float>(&cells, PLACED);
     let width = bytes.windows(4).position(|at| at == [0, 1, 4, 0]).unwrap();
     // The entry: tag 256, type 4, one number, and the number.
-    bytes[width + 7..width + 11].copy_from_slice(&[0xff; 4]);
-    let error = read(&bytes).unwrap_err().to_string();
-    assert!(error.contains("4294967295 by 2 are more than"), "{error}");
+    let mut wide = |width_is: u32| {
+        let at = width + 7..width + 11;
+        bytes[at].copy_from_slice(&width_is.to_le_bytes());
+        read(&bytes).unwrap_err().to_string()
+    };
+    let error = wide(25_000_000);
+    assert!(error.contains("25000000 by 2 are more than"), "{error}");
+    let error = wide(u32::MAX);
+    assert!(error.contains("decoder limits exceeded"), "{error}");
 }
 
 #[test]
