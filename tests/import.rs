@@ -387,10 +387,12 @@ fn the_projection_of_a_geotiff_is_taken_and_doubted() {
     // here to a millimetre, and its neighbour's zone is 6 degrees off.
     let other = with(Some("EPSG:25832")).unwrap();
     assert!(!other.told().contains("says that it is on"), "{}", other.told());
-    let log = "+proj=utm +zone=32 +datum=WGS84 +x_0=500030";
-    let shifted = with(Some(log)).map(|found| found.told());
-    let shifted = shifted.unwrap_or_else(|error| error.to_string());
-    assert!(shifted.contains("it is on EPSG:32632"), "{shifted}");
+    // The zone's own projection but for an origin 30 m further west.
+    let shifted = "+proj=tmerc +lat_0=0 +lon_0=9 +k=0.9996 +x_0=500030 \
+                   +ellps=WGS84 +towgs84=0,0,0,0,0,0,0";
+    let told = with(Some(shifted)).unwrap().told();
+    assert!(told.contains("it is on EPSG:32632"), "{told}");
+    assert!(told.contains("is 30 m apart"), "{told}");
     geotiff(&tif, (499_900.0, 4_983_455.4), 5514);
     let error = with(None).unwrap_err().to_string();
     assert!(error.contains("is on EPSG:5514; expected one of"), "{error}");
@@ -456,6 +458,7 @@ fn a_front_is_its_distances_along_the_slope() {
         assert!(found.event.contains("velocity = 0.000"), "{}", found.event);
         let told = found.told();
         assert!(told.contains("correlated by -1/2"), "{told}");
+        assert!(told.contains("front ends in the motion"), "{told}");
         assert_eq!(told.contains("up to 3, are one place"), name == "points");
     }
 }

@@ -48,7 +48,12 @@ pub(super) fn doubts(case: &Case) -> Vec<String> {
 /// A log that begins or ends in the motion.
 fn ends(case: &Case) -> Option<String> {
     let last = case.moving.log.fixes.len() - 1;
-    let fast = |i: usize| case.moving.speeds[i] > case.threshold.max(0.5);
+    // The speed of a front at its first row is not a mean over the next.
+    let speed = |i: usize| match (i, case.recorded.first()) {
+        (0, Some(speed)) if case.moving.log.is_front() => *speed,
+        _ => case.moving.speeds[i],
+    };
+    let fast = |i: usize| speed(i) > case.threshold.max(0.5);
     let begins = case.moving.phase.first == 0 && fast(0);
     let stops = case.moving.phase.last == last && fast(last);
     let end = match (begins, stops) {
