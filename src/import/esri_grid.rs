@@ -9,22 +9,11 @@ use crate::io::{place, quoted};
 
 /// Reads a grid.
 pub(super) fn read(text: &str, path: &Path) -> Result<Grid> {
-    let mut header = BTreeMap::new();
-    let mut lines = (1..).zip(text.lines()).peekable();
     let wrong = |line: usize, what: &str| {
         Error::input(what).within(format_args!("{}:{line}", place(path)))
     };
-    while let Some((line, text)) = lines.peek() {
-        let begins = text.trim_start().chars().next();
-        if begins.is_some_and(|c| !c.is_ascii_alphabetic()) {
-            break;
-        }
-        if begins.is_some() {
-            let (key, value) = entry(text).map_err(|e| wrong(*line, &e))?;
-            header.insert(key, (*line, value));
-        }
-        lines.next();
-    }
+    let (header, first) = header(text).map_err(|(at, e)| wrong(at, &e))?;
+    let lines = (first..).zip(text.lines().skip(first - 1));
     let extent = extent(&header).map_err(|(at, e)| wrong(at, &e))?;
     let none = header.get("nodata_value").map_or(-9999.0, |h| h.1);
     let wanted = extent.columns * extent.rows;
@@ -55,6 +44,25 @@ pub(super) fn read(text: &str, path: &Path) -> Result<Grid> {
     }
 }
 
+/// The numbers of a header by their keys, in small letters, with their lines.
+type Header = BTreeMap<String, (usize, f64)>;
+
+/// The header, and the first line behind it.
+fn header(text: &str) -> Result<(Header, usize), (usize, String)> {
+    let mut header = Header::new();
+    for (line, text) in (1..).zip(text.lines()) {
+        let begins = text.trim_start().chars().next();
+        if begins.is_some_and(|c| !c.is_ascii_alphabetic()) {
+            return Ok((header, line));
+        }
+        if begins.is_some() {
+            let (key, value) = entry(text).map_err(|e| (line, e))?;
+            header.insert(key, (line, value));
+        }
+    }
+    Ok((header, text.lines().count() + 1))
+}
+
 /// A line of the header: `ncols 121`.
 fn entry(text: &str) -> Result<(String, f64), String> {
     let mut words = text.split_ascii_whitespace();
@@ -82,9 +90,7 @@ fn lacks(key: &str) -> (usize, String) {
 }
 
 /// Where the cells lie, as the header says.
-fn extent(
-    header: &BTreeMap<String, (usize, f64)>,
-) -> Result<Extent, (usize, String)> {
+fn extent(header: &Header) -> Result<Extent, (usize, String)> {
     let get = |key: &str| header.get(key).copied();
     let count = |key: &str| match get(key) {
         None => Err(lacks(key)),
