@@ -31,8 +31,8 @@ pub(super) struct Arguments {
     out: Option<PathBuf>,
     /// Columns of the log by name and unit, such as
     /// "time=UTC,speed=v_kmh:km/h"; there are time (s, ms, hh:mm:ss), lon,
-    /// lat (deg), x, y, along, height (m), speed, ground-speed, vel-north, vel-east,
-    /// vel-down (m/s, km/h), satellites, fix
+    /// lat (deg), x, y, along, height (m), speed, ground-speed, vel-north,
+    /// vel-east, vel-down (m/s, km/h), satellites, fix
     #[arg(long, value_name = "COLUMNS")]
     columns: Option<String>,
     /// A terrain model, an ESRI ASCII grid or a GeoTIFF (.tif)

@@ -83,8 +83,8 @@ fn of_front(case: &Case) -> String {
     let speeds = match even_step(&case.moving.times()) {
         None => String::new(),
         Some(step) => format!(
-            "# Or the mean speeds of equation 13 of Heredia et al. (2020), whose \
-             errors are\n# correlated:\n\
+            "# Or the mean speeds of equation 13 of Heredia et al. (2020), \
+             whose errors are\n# correlated:\n\
              # quantity = \"velocity\"\n\
              # window = {step}\n"
         ),
