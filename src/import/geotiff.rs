@@ -23,8 +23,9 @@ pub(super) fn read(bytes: &[u8], path: &Path) -> Result<Grid> {
 }
 
 fn grid(bytes: &[u8]) -> Result<Grid, String> {
-    let mut image = Decoder::new(Cursor::new(bytes)).map_err(broken)?;
-    let (columns, rows) = image.dimensions().map_err(broken)?;
+    let mut image =
+        Decoder::new(Cursor::new(bytes)).map_err(|e| broken(&e))?;
+    let (columns, rows) = image.dimensions().map_err(|e| broken(&e))?;
     let (columns, rows) = (columns as usize, rows as usize);
     bounded(columns, rows)?;
     if columns < 2 || rows < 2 {
@@ -41,7 +42,8 @@ fn grid(bytes: &[u8]) -> Result<Grid, String> {
     // Eight bytes a cell, and a tile that may be wider than the model.
     let mut limits = Limits::default();
     limits.decoding_buffer_size = 8 * MOST;
-    let decoded = image.with_limits(limits).read_image().map_err(broken)?;
+    let decoded =
+        image.with_limits(limits).read_image().map_err(|e| broken(&e))?;
     let z = elevations(decoded, none, columns)?;
     if z.len() != columns * rows {
         return Err(format!(
@@ -53,7 +55,7 @@ fn grid(bytes: &[u8]) -> Result<Grid, String> {
     Ok(Grid { extent, z, epsg: keys.projection() })
 }
 
-fn broken(error: TiffError) -> String {
+fn broken(error: &TiffError) -> String {
     format!(
         "is no GeoTIFF that can be read ({}); expected one band of \
          elevations, plain or packed by deflate or LZW: export it again, or \
@@ -64,9 +66,10 @@ fn broken(error: TiffError) -> String {
 
 /// Refuses pictures, and elevations that stand for others.
 fn one_band(image: &mut Image) -> Result<(), String> {
-    let color = image.colortype().map_err(broken)?;
+    let color = image.colortype().map_err(|e| broken(&e))?;
     let light = Tag::PhotometricInterpretation;
-    let light = image.find_tag_unsigned::<u16>(light).map_err(broken)?;
+    let light =
+        image.find_tag_unsigned::<u16>(light).map_err(|e| broken(&e))?;
     // 0: the greatest value is black, and values are turned as they are read.
     if !matches!(color, ColorType::Gray(_)) || light == Some(0) {
         return Err(format!(
@@ -74,7 +77,7 @@ fn one_band(image: &mut Image) -> Result<(), String> {
              export that band alone"
         ));
     }
-    let more = image.find_tag(GDAL_METADATA).map_err(broken)?;
+    let more = image.find_tag(GDAL_METADATA).map_err(|e| broken(&e))?;
     let more = more.and_then(|text| text.into_string().ok());
     let more = more.unwrap_or_default();
     if more.contains("role=\"scale\"") || more.contains("role=\"offset\"") {
@@ -88,8 +91,8 @@ fn one_band(image: &mut Image) -> Result<(), String> {
 
 /// Numbers of a tag, where it is there.
 fn numbers(image: &mut Image, tag: Tag) -> Result<Option<Vec<f64>>, String> {
-    let found = image.find_tag(tag).map_err(broken)?;
-    found.map(|value| value.into_f64_vec().map_err(broken)).transpose()
+    let found = image.find_tag(tag).map_err(|e| broken(&e))?;
+    found.map(|value| value.into_f64_vec().map_err(|e| broken(&e))).transpose()
 }
 
 /// The keys of a GeoTIFF that are short numbers.
@@ -100,7 +103,8 @@ impl Keys {
     /// many there are, and the value.
     fn of(image: &mut Image) -> Result<Self, String> {
         let tag = Tag::GeoKeyDirectoryTag;
-        let all = image.find_tag_unsigned_vec::<u16>(tag).map_err(broken)?;
+        let all =
+            image.find_tag_unsigned_vec::<u16>(tag).map_err(|e| broken(&e))?;
         let all = all.unwrap_or_default();
         let rows = all.chunks_exact(4).skip(1);
         let short = rows.filter(|row| row[1] == 0).map(|row| (row[0], row[3]));
@@ -204,10 +208,12 @@ fn by_transformation(m: &[f64]) -> Result<(f64, f64, (f64, f64)), String> {
 /// The number that stands for no data (GDAL_NODATA); -9999 as in an ESRI
 /// ASCII grid where the file says none.
 fn no_data(image: &mut Image) -> Result<f64, String> {
-    let Some(text) = image.find_tag(Tag::GdalNodata).map_err(broken)? else {
+    let Some(text) =
+        image.find_tag(Tag::GdalNodata).map_err(|e| broken(&e))?
+    else {
         return Ok(-9999.0);
     };
-    let text = text.into_string().map_err(broken)?;
+    let text = text.into_string().map_err(|e| broken(&e))?;
     text.trim_matches(['\0', ' ']).parse().map_err(|_| {
         format!(
             "GDAL_NODATA is {}; expected a number: export it again",
