@@ -8,7 +8,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use couloir::import::{Imported, Options, import};
+use couloir::import::{Imported, Options, import, import_all};
 
 /// Says a line that is not held back for tests that pass.
 fn say(text: &str) {
@@ -274,6 +274,333 @@ fn terrain_and_path_are_taken_where_given() {
         assert!(told.contains(part), "{part}: {told}");
     }
     assert!(found.picture.starts_with("<svg"));
+}
+
+/// Numbers as a file has them.
+fn doubles(all: &[f64]) -> Vec<u8> {
+    all.iter().copied().flat_map(f64::to_le_bytes).collect()
+}
+
+/// The same incline as a GeoTIFF of double precision, written byte by byte:
+/// the corner in the north-west, and the code of the projection.
+fn geotiff(path: &Path, (west, north): (f64, f64), epsg: u16) {
+    let slope = 30.0_f64.to_radians().tan();
+    let row = |row: i32| {
+        let z = 900.0 + slope * (500.0 - 10.0 * f64::from(row));
+        doubles(&[z; 21])
+    };
+    let cells: Vec<u8> = (0..101).flat_map(row).collect();
+    let keys = [1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, epsg];
+    let parts = [
+        cells.clone(),
+        doubles(&[10.0, 10.0, 0.0]),
+        doubles(&[0.0, 0.0, 0.0, west, north, 0.0]),
+        keys.into_iter().flat_map(u16::to_le_bytes).collect(),
+    ];
+    // Behind the header of eight bytes: the parts, then the directory.
+    let length = |part: &Vec<u8>| u32::try_from(part.len()).unwrap();
+    let at = |i: usize| 8 + parts[..i].iter().map(length).sum::<u32>();
+    // Tag, type (3 short, 4 long, 12 double), how many, the value or where.
+    let entries: [(u16, u16, u32, u32); 13] = [
+        (256, 4, 1, 21),
+        (257, 4, 1, 101),
+        (258, 3, 1, 64),
+        (259, 3, 1, 1),
+        (262, 3, 1, 1),
+        (273, 4, 1, at(0)),
+        (277, 3, 1, 1),
+        (278, 4, 1, 101),
+        (279, 4, 1, length(&cells)),
+        (339, 3, 1, 3),
+        (33550, 12, 3, at(1)),
+        (33922, 12, 6, at(2)),
+        (34735, 3, 12, at(3)),
+    ];
+    let directory = at(4).to_le_bytes();
+    let mut file = [&b"II*\0"[..], &directory, &parts.concat()].concat();
+    file.extend(13_u16.to_le_bytes());
+    file.extend(entries.into_iter().flat_map(entry));
+    file.extend([0; 4]);
+    fs::write(path, file).unwrap();
+}
+
+/// An entry of a directory of a TIFF.
+fn entry((tag, kind, count, value): (u16, u16, u32, u32)) -> Vec<u8> {
+    let [tag, kind] = [tag, kind].map(u16::to_le_bytes);
+    let [count, value] = [count, value].map(u32::to_le_bytes);
+    [&tag[..], &kind, &count, &value].concat()
+}
+
+#[test]
+fn a_geotiff_is_the_same_ground_and_names_its_projection() {
+    let folder = fresh("geotiff");
+    let (asc, tif) = (terrain(&folder), folder.join("dem.tif"));
+    // The grid's first cell has its middle at 400, 500.
+    geotiff(&tif, (395.0, 505.0), 32632);
+    let text = synthetic("t,x,y,z,v", |t, x, _, v| {
+        format!("{t:.1},503,{:.4},2000,{v:.4}", -x)
+    });
+    let on = |dem: &PathBuf| {
+        imported("same-ground", &text, |options| {
+            options.terrain = Some(dem.clone());
+        })
+    };
+    // The ASCII grid has a row without data at y = -120 and four decimals.
+    let (asc, tif) = (rows(&on(&asc).track), rows(&on(&tif).track));
+    assert_eq!(asc.len(), tif.len());
+    for (a, b) in asc.iter().zip(&tif) {
+        assert!(a.0 == b.0 && (a.1 - b.1).abs() < 2e-3, "{a:?} {b:?}");
+    }
+}
+
+/// On the central meridian of a zone of UTM: 500 km east, and north the
+/// length of the meridian to 45 degrees, 4984944.378 m, times 0.9996.
+#[test]
+fn the_projection_of_a_geotiff_is_taken_and_doubted() {
+    let tif = fresh("projected").join("dem.tif");
+    geotiff(&tif, (499_900.0, 4_983_455.4), 32632);
+    // One degree of latitude at 45 N is 111 132 m on the ellipsoid.
+    let text = synthetic("t,lon,lat,v", |t, x, _, v| {
+        format!("{t:.1},9,{:.8},{v:.4}", 45.0 - x / 111_132.0)
+    });
+    let with = |crs: Option<&str>| {
+        let mut options = Options::new("");
+        options.crs = crs.map(str::to_owned);
+        options.terrain = Some(tif.clone());
+        let log = tif.with_file_name("log.csv");
+        fs::write(&log, &text).unwrap();
+        options.logs = vec![log];
+        import(&options)
+    };
+    let found = with(None).unwrap();
+    let told = found.told();
+    assert!(told.contains("brought to EPSG:32632"), "{told}");
+    assert!(told.contains("that the terrain model names"), "{told}");
+    assert!(error(&found) < 1e-3);
+    // The slope, but for UTM's metres, which are 0.9996 of those.
+    let track = rows(&found.track);
+    let slope = (track[0].1 - track[20].1) / (track[20].0 - track[0].0);
+    assert!((slope - 30.0_f64.to_radians().tan()).abs() < 1e-3, "{slope}");
+    // The same projection in other words is none to doubt; ETRS89 is the same
+    // here to a millimetre, and its neighbour's zone is 6 degrees off.
+    let other = with(Some("EPSG:25832")).unwrap();
+    assert!(!other.told().contains("says that it is on"), "{}", other.told());
+    // The zone's own projection but for an origin 30 m further west.
+    let shifted = "+proj=tmerc +lat_0=0 +lon_0=9 +k=0.9996 +x_0=500030 \
+                   +ellps=WGS84 +towgs84=0,0,0,0,0,0,0";
+    let told = with(Some(shifted)).unwrap().told();
+    assert!(told.contains("it is on EPSG:32632"), "{told}");
+    assert!(told.contains("is 30 m apart"), "{told}");
+    geotiff(&tif, (499_900.0, 4_983_455.4), 5514);
+    let error = with(None).unwrap_err().to_string();
+    assert!(error.contains("is on EPSG:5514; expected one of"), "{error}");
+    assert!(error.contains("PROJ string with --crs"), "{error}");
+}
+
+/// The front of a mass with 3 m/s2 along an incline of 30 degrees from rest,
+/// a position each second, to the millimetre.
+fn front(header: &str, row: impl Fn(f64, f64) -> String) -> String {
+    let rows = (0..=12).map(|i| {
+        let t = f64::from(i);
+        row(t, 1.5 * t * t)
+    });
+    format!("{header}\n{}", rows.collect::<String>())
+}
+
+/// Distances and mean speeds of the recording of a front.
+fn of_front(found: &Imported) -> Vec<[f64; 3]> {
+    let number = |cell: &str| cell.parse::<f64>().unwrap();
+    let row = |line: &str| {
+        let cells: Vec<f64> = line.split(',').map(number).collect();
+        [cells[0], cells[1], cells[2]]
+    };
+    found.recording.lines().skip(1).map(row).collect()
+}
+
+#[test]
+fn a_front_is_its_distances_along_the_slope() {
+    let folder = fresh("front");
+    let (dem, path) = (folder.join("dem.tif"), folder.join("path.geojson"));
+    geotiff(&dem, (395.0, 505.0), 32632);
+    let line = r#"{"type":"LineString","coordinates":[[500,50],[500,-450]]}"#;
+    fs::write(&path, line).unwrap();
+    let cosine = 30.0_f64.to_radians().cos();
+    // Three points each time, whose mean is on the path.
+    let points = front("t,x,y,z", |t, s| {
+        let y = -cosine * s;
+        [-20.0, 5.0, 15.0]
+            .map(|x| format!("{t},{:.4},{y:.4},2000\n", 500.0 + x))
+            .concat()
+    });
+    // The path begins 50 m before the front.
+    let along = front("t,s", |t, s| format!("{t},{:.4}\n", 50.0 + cosine * s));
+    for (name, text) in [("points", points), ("along", along)] {
+        let file = folder.join(format!("{name}.csv"));
+        fs::write(&file, text).unwrap();
+        let mut options = Options::of_logs::<PathBuf>([]);
+        options.front = Some(file);
+        options.terrain = Some(dem.clone());
+        options.path = Some(path.clone());
+        let found = import(&options).unwrap();
+        let rows = of_front(&found);
+        assert_eq!(rows.len(), 12, "{name}");
+        // Written to 1 mm, from places to 0.1 mm on a track to 1 mm.
+        for [t, position, speed] in rows {
+            let (s, v) = (1.5 * t * t, 3.0 * (t - 0.5));
+            assert!((position - s).abs() < 2e-3, "{name} {t}: {position}");
+            assert!((speed - v).abs() < 2e-3, "{name} {t}: {speed}");
+        }
+        for part in ["quantity = \"position\"", "# window = 1\n"] {
+            assert!(found.event.contains(part), "{}", found.event);
+        }
+        assert!(found.event.contains("velocity = 0.000"), "{}", found.event);
+        let told = found.told();
+        assert!(told.contains("correlated by -1/2"), "{told}");
+        assert!(told.contains("front ends in the motion"), "{told}");
+        assert_eq!(told.contains("up to 3, are one place"), name == "points");
+    }
+}
+
+/// The log of a sensor so many metres further down, whose clock is so many
+/// seconds later.
+fn sensor(below: f64, later: f64) -> String {
+    synthetic("t,x,y,v", |t, x, _, v| {
+        format!("{:.1},503,{:.4},{v:.4}", t + later, -x - below)
+    })
+}
+
+/// Two sensors, and a front that begins 20 m above the first, all on one path.
+fn three(name: &str, later: f64) -> Options {
+    let folder = fresh(name);
+    let file = |name: &str, text: &str| {
+        let file = folder.join(name);
+        fs::create_dir_all(file.parent().unwrap()).unwrap();
+        fs::write(&file, text).unwrap();
+        file
+    };
+    // Two files of one name in two folders.
+    let mut options = Options::of_logs([
+        file("a/gps.csv", &sensor(0.0, 0.0)),
+        file("b/gps.csv", &sensor(40.0, later)),
+    ]);
+    let moving = front("t,x,y", |t, s| {
+        format!("{},500,{:.4}\n", t + 12.0, 20.0 - 0.866 * s)
+    });
+    let line = r#"{"type":"LineString","coordinates":[[500,50],[500,-450]]}"#;
+    options.front = Some(file("front.csv", &moving));
+    options.path = Some(file("path.geojson", line));
+    let dem = folder.join("dem.tif");
+    geotiff(&dem, (395.0, 505.0), 32632);
+    options.terrain = Some(dem);
+    options
+}
+
+/// The number of a key in an event.toml.
+fn number(one: &Imported, key: &str) -> f64 {
+    let mut lines = one.event.lines();
+    let line = lines.find(|line| line.starts_with(key)).unwrap();
+    let value = line.split('=').nth(1).unwrap();
+    value.split('#').next().unwrap().trim().parse().unwrap()
+}
+
+#[test]
+fn two_sensors_and_a_front_share_path_track_and_clock() {
+    let options = three("several", 4.0);
+    let all = import_all(&options).unwrap();
+    let folders: Vec<_> = all.iter().map(|one| one.folder.as_str()).collect();
+    assert_eq!(folders, ["gps", "gps-2", "front"]);
+    assert!(all.iter().all(|one| one.track == all[0].track));
+    // The front is first up the path, and the sensors 20 and 60 m further
+    // down, to the millimetre that the files are written to.
+    let places = all.iter().map(|one| number(one, "x = "));
+    for (place, known) in places.zip([20.0, 60.0, 0.0]) {
+        assert!((place - known).abs() < 2e-3, "{place} {known}");
+    }
+    // The row before the threshold is passed: at 10, 14 and 12 s of the clock.
+    let starts = all.iter().map(|one| number(one, "start = "));
+    for (start, known) in starts.zip([0.0, 4.0, 2.0]) {
+        assert!((start - known).abs() < 1e-6, "{start} {known}");
+    }
+    let error = import(&options).unwrap_err().to_string();
+    assert!(error.contains("there are 3 recordings; expected one"), "{error}");
+}
+
+#[test]
+fn recordings_without_a_common_moment_have_their_own_clocks() {
+    let all = import_all(&three("apart", 4000.0)).unwrap();
+    assert!(all.iter().all(|one| !one.event.contains("[event]")));
+    let told = |one: &Imported| one.told().contains("a clock of its own");
+    assert!(all.iter().all(told));
+}
+
+#[test]
+fn the_command_writes_a_folder_for_each_recording() {
+    let folder = fresh("folders");
+    let text = synthetic("t,x,y,z,v", |t, x, way, v| {
+        let (y, z) = (-x, 900.0 - 0.5 * way);
+        format!("{t:.1},500,{y:.4},{z:.4},{v:.4}")
+    });
+    let names = ["one.csv", "two.csv"].map(|name| folder.join(name));
+    names.iter().for_each(|name| fs::write(name, &text).unwrap());
+    let [one, two] = names.map(|name| name.to_string_lossy().into_owned());
+    let out = folder.join("events");
+    let write = ["import", &one, &two, "--out", &out.to_string_lossy()];
+    for _ in 0..2 {
+        let output = couloir(&write);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{said}");
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(said.contains("two --one-law"), "{said}");
+    }
+    for name in ["one", "two"] {
+        let file = out.join(name).join("event.toml");
+        assert!(file.is_file(), "{name}");
+        let event = file.to_string_lossy().into_owned();
+        let set = ["--set", "mu=0.3", "--set", "xi=1000"];
+        let output = couloir(&[&["simulate", &event][..], &set].concat());
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{said}");
+    }
+    // Somebody's file in one of the folders is not replaced.
+    fs::write(out.join("two/note.txt"), "mine").unwrap();
+    assert_eq!(couloir(&write).status.code(), Some(2));
+}
+
+#[test]
+fn a_front_that_does_not_fit_is_refused_with_a_mend() {
+    let folder = fresh("front-refused");
+    let file = |name: &str, text: &str| {
+        let file = folder.join(name);
+        fs::write(&file, text).unwrap();
+        file.to_string_lossy().into_owned()
+    };
+    let along = front("t,s", |t, s| format!("{t},{s:.3}\n"));
+    let along = file("along.csv", &along);
+    let line = r#"{"type":"LineString","coordinates":[[500,50],[500,0]]}"#;
+    let path = file("path.geojson", line);
+    let none = file("none.csv", "t,u\n0,1\n");
+    let bad = file("bad.csv", "t,s\n0,1\n1,far\n");
+    let log = file("log.csv", "t,x,y,v\n0,1,1,1\n");
+    let broken = file("dem.tif", "ncols 3");
+    let cases: [(&[&str], &str); 7] = [
+        (&["--front", &along], "along.csv: has distances along a path"),
+        (&["--front", &along, "--path", &path], "csv:8: the distance along"),
+        (&["--front", &none], "none.csv:1: the header is"),
+        (&["--front", &bad], "bad.csv:3: \"s\" is \"far\""),
+        (&[&log, &log, "--name", "both"], "--name: is given"),
+        (&[&log, "--terrain", &broken], "dem.tif: is no GeoTIFF"),
+        (&[], "LOG"),
+    ];
+    for (arguments, part) in cases {
+        let out = folder.join("out");
+        let out = ["--out", &*out.to_string_lossy()].map(str::to_owned);
+        let out: Vec<&str> = out.iter().map(String::as_str).collect();
+        let output = couloir(&[&["import"], arguments, &out].concat());
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+        assert!(said.contains(part), "{part}: {said}");
+        assert!(!folder.join("out").exists(), "{arguments:?}");
+    }
 }
 
 fn couloir(arguments: &[&str]) -> Output {

@@ -37,7 +37,11 @@ pub(super) const IMPORT: &str = "\
 Examples:
   couloir import log.gpx --out my-event
   couloir import log.csv --columns \"time=UTC,speed=v_kmh:km/h\" \\
-    --terrain dem.asc --path path.shp --crs EPSG:31254 --out my-event";
+    --terrain dem.asc --path path.shp --crs EPSG:31254 --out my-event
+  couloir import --front front.csv --terrain dem.tif --path path.shp \\
+    --out my-event
+  couloir import sensor-1.csv sensor-2.csv --front front.csv \\
+    --terrain dem.tif --path path.shp --out my-events";
 
 pub(super) const BENCH: &str = "\
 Examples:

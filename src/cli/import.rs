@@ -1,6 +1,7 @@
-//! `couloir import`: an event folder from a log, a terrain model and a path.
+//! `couloir import`: event folders from logs, a front, a terrain model and a
+//! path.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
@@ -10,31 +11,38 @@ use super::results::{Results, folder};
 use super::width;
 use crate::error::Result;
 use crate::export::InferenceData;
-use crate::import::{FILES, Options, import};
+use crate::import::{FILES, Imported, Options, import_all};
 use crate::report::text::wrap;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The log of a GNSS sensor: a table of text with a header (u-blox logs,
-    /// any CSV), or GPX
-    log: PathBuf,
-    /// The event folder to write; without it nothing is written
+    /// any CSV), or GPX; several for several sensors in one avalanche
+    #[arg(value_name = "LOG", required_unless_present = "front")]
+    logs: Vec<PathBuf>,
+    /// The places of a front by time, a table: t, and x and y, lon and lat, or
+    /// s, the horizontal distance along the path; points of one time are
+    /// averaged
+    #[arg(long, value_name = "FILE")]
+    front: Option<PathBuf>,
+    /// The event folder to write, or that of a folder for each recording;
+    /// without it nothing is written
     #[arg(long, value_name = "DIR", value_parser = folder)]
     out: Option<PathBuf>,
     /// Columns of the log by name and unit, such as
     /// "time=UTC,speed=v_kmh:km/h"; there are time (s, ms, hh:mm:ss), lon,
-    /// lat (deg), x, y, height (m), speed, ground-speed, vel-north, vel-east,
-    /// vel-down (m/s, km/h), satellites, fix
+    /// lat (deg), x, y, along, height (m), speed, ground-speed, vel-north,
+    /// vel-east, vel-down (m/s, km/h), satellites, fix
     #[arg(long, value_name = "COLUMNS")]
     columns: Option<String>,
-    /// A terrain model, an ESRI ASCII grid
+    /// A terrain model, an ESRI ASCII grid or a GeoTIFF (.tif)
     #[arg(long, value_name = "FILE")]
     terrain: Option<PathBuf>,
     /// The path, a shapefile or GeoJSON; the log's own positions otherwise
     #[arg(long, value_name = "FILE")]
     path: Option<PathBuf>,
     /// The projection of terrain and path, such as EPSG:31254, or a PROJ
-    /// string
+    /// string; that of the GeoTIFF otherwise
     #[arg(long, value_name = "CRS", allow_hyphen_values = true)]
     crs: Option<String>,
     /// The length over which elevations are smoothed [m]
@@ -60,23 +68,25 @@ pub(super) struct Arguments {
 
 impl Arguments {
     pub(super) fn run(&self) -> Result<Answer> {
-        let results = Results::ready(self.out.as_deref(), &FILES, &[])?;
-        let imported = import(&self.options())?;
-        let wrote = results.write(|| Ok(imported.files()));
+        let options = self.options();
+        let folders = options.folders();
+        let within: Vec<String> =
+            folders.iter().map(|name| format!("{name}/")).collect();
+        let names: Vec<&str> = match within.is_empty() {
+            true => FILES.to_vec(),
+            false => within.iter().map(String::as_str).collect(),
+        };
+        let results = Results::ready(self.out.as_deref(), &names, &[])?;
+        let all = import_all(&options)?;
+        let wrote = results
+            .write(|| Ok(all.iter().flat_map(Imported::files).collect()));
         let width = width();
-        let mut text = String::new();
-        for line in imported.told().lines() {
-            // Below a dash, lines begin where its first one does.
-            let below = if line.starts_with("- ") { "\n  " } else { "\n" };
-            text.push_str(&wrap(line, width - 2).join(below));
-            text.push('\n');
-        }
-        text.push_str(&results.told(&wrote, &FILES, width));
+        let each = all.iter().map(|one| told(one, width));
+        let mut text = each.collect::<Vec<_>>().join("\n");
+        text.push_str(&results.told(&wrote, &names, width));
         text.push_str(&match &self.out {
             None => "\nNothing was written: give --out DIR.\n".to_owned(),
-            Some(out) if wrote.is_ok() => {
-                format!("\n    couloir calibrate {}\n", out.display())
-            }
+            Some(out) if wrote.is_ok() => next(out, &folders),
             Some(_) => String::new(),
         });
         Ok(Answer::from(text).after(wrote))
@@ -84,13 +94,15 @@ impl Arguments {
 
     /// The same without a folder or a terminal.
     pub(super) fn made(&self) -> Result<Made> {
-        let files = import(&self.options())?.files().into_iter();
+        let all = import_all(&self.options())?;
+        let files = all.iter().flat_map(Imported::files);
         let files = files.map(|(name, text)| (name.into(), text.into()));
         Ok(Made { files: files.collect(), data: Ok(InferenceData::default()) })
     }
 
     fn options(&self) -> Options {
-        let mut options = Options::new(&self.log);
+        let mut options = Options::of_logs(&self.logs);
+        options.front.clone_from(&self.front);
         options.columns.clone_from(&self.columns);
         options.terrain.clone_from(&self.terrain);
         options.path.clone_from(&self.path);
@@ -103,4 +115,30 @@ impl Arguments {
         options.name.clone_from(&self.name);
         options
     }
+}
+
+/// What was done and what is doubted, under the recording's folder where it
+/// has one.
+fn told(one: &Imported, width: usize) -> String {
+    let mut text = match one.folder.is_empty() {
+        true => String::new(),
+        false => format!("{}:\n", one.folder),
+    };
+    for line in one.told().lines() {
+        // Below a dash, lines begin where its first one does.
+        let below = if line.starts_with("- ") { "\n  " } else { "\n" };
+        text.push_str(&wrap(line, width - 2).join(below));
+        text.push('\n');
+    }
+    text
+}
+
+/// The command to go on with.
+fn next(out: &Path, folders: &[String]) -> String {
+    if folders.is_empty() {
+        return format!("\n    couloir calibrate {}\n", out.display());
+    }
+    let all = folders.iter().map(|name| out.join(name).display().to_string());
+    let all: Vec<_> = all.collect();
+    format!("\n    couloir diagnose {} --one-law\n", all.join(" "))
 }

@@ -79,7 +79,7 @@ enum Command {
     /// Write a commented event to start from
     #[command(after_help = examples::NEW)]
     New(new::Arguments),
-    /// Make an event of a GNSS log, a terrain model and a path
+    /// Make an event of a GNSS log or a front, a terrain model and a path
     #[cfg(feature = "import")]
     #[command(after_help = examples::IMPORT)]
     Import(import::Arguments),

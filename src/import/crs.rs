@@ -59,16 +59,22 @@ impl Crs {
             .or_else(|| text.strip_prefix("epsg:"))
             .unwrap_or(text);
         let code = digits.parse::<u32>().ok();
-        match code.and_then(|code| Some((code, definition(code)?))) {
-            Some((code, plane)) => Self::of(&plane, format!("EPSG:{code}")),
+        match code.map_or(Ok(None), Self::by_code)? {
+            Some(crs) => Ok(crs),
             None => Err(Error::input(format!(
-                "--crs: found {}; expected one of EPSG:{}, 25828 to 25838, \
-                 31254 to 31259, 32601 to 32660 and 32701 to 32760, or a PROJ \
-                 string such as \"+proj=utm +zone=32 +datum=WGS84\"",
+                "--crs: found {}; expected one of {}, or a PROJ string such \
+                 as \"+proj=utm +zone=32 +datum=WGS84\"",
                 quoted(text),
-                KNOWN.map(|known| known.0.to_string()).join(", ")
+                known_codes()
             ))),
         }
+    }
+
+    /// By an EPSG code; nothing where that is not known.
+    pub(super) fn by_code(code: u32) -> Result<Option<Self>> {
+        let plane = definition(code);
+        let named = |plane: String| Self::of(&plane, format!("EPSG:{code}"));
+        plane.map(named).transpose()
     }
 
     /// A transverse Mercator projection about a place \[degrees\].
@@ -115,6 +121,15 @@ impl Crs {
         let (x, y, _) = point;
         (x.abs() < 1e9 && y.abs() < 1e9).then_some((x, y))
     }
+}
+
+/// The EPSG codes that are known, in words.
+pub(super) fn known_codes() -> String {
+    format!(
+        "EPSG:{}, 25828 to 25838, 31254 to 31259, 32601 to 32660 and 32701 \
+         to 32760",
+        KNOWN.map(|known| known.0.to_string()).join(", ")
+    )
 }
 
 /// What an EPSG code stands for, where that is known.

@@ -25,7 +25,7 @@ const WANDER: f64 = 10.0;
 
 /// All doubts, in sentences.
 pub(super) fn doubts(case: &Case) -> Vec<String> {
-    let mut all = case.log.doubts.clone();
+    let mut all = case.moving.log.doubts.clone();
     let more = [
         ends(case),
         rival(case),
@@ -38,6 +38,8 @@ pub(super) fn doubts(case: &Case) -> Vec<String> {
         heights(case),
         holes(case),
         climbs(case),
+        start(case),
+        clock(case),
     ];
     all.extend(more.into_iter().flatten());
     all
@@ -45,28 +47,36 @@ pub(super) fn doubts(case: &Case) -> Vec<String> {
 
 /// A log that begins or ends in the motion.
 fn ends(case: &Case) -> Option<String> {
-    let last = case.log.fixes.len() - 1;
-    let fast = |i: usize| case.speeds[i] > case.threshold.max(0.5);
-    let begins = case.phase.first == 0 && fast(0);
-    let stops = case.phase.last == last && fast(last);
+    let last = case.moving.log.fixes.len() - 1;
+    // The speed of a front at its first row is not a mean over the next.
+    let speed = |i: usize| match (i, case.recorded.first()) {
+        (0, Some(speed)) if case.moving.log.is_front() => *speed,
+        _ => case.moving.speeds[i],
+    };
+    let fast = |i: usize| speed(i) > case.threshold.max(0.5);
+    let begins = case.moving.phase.first == 0 && fast(0);
+    let stops = case.moving.phase.last == last && fast(last);
     let end = match (begins, stops) {
         (true, true) => "begins and ends",
         (true, false) => "begins",
         (false, true) => "ends",
         (false, false) => return None,
     };
-    Some(format!("The log {end} in the motion: a part of it is missing."))
+    Some(format!(
+        "The {} {end} in the motion: a part of it is missing.",
+        case.moving.log.word()
+    ))
 }
 
 /// Another stretch that was faster.
 fn rival(case: &Case) -> Option<String> {
     let top = |from: usize, to: usize| {
-        case.speeds[from..=to].iter().copied().fold(0.0, f64::max)
+        case.moving.speeds[from..=to].iter().copied().fold(0.0, f64::max)
     };
-    let own = top(case.phase.first, case.phase.last);
-    let others = case.others.iter().map(|p| (top(p.first, p.last), p));
+    let own = top(case.moving.phase.first, case.moving.phase.last);
+    let others = case.moving.others.iter().map(|p| (top(p.first, p.last), p));
     let (speed, other) = others.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let time = |i: usize| case.log.fixes[i].time;
+    let time = |i: usize| case.moving.log.fixes[i].time;
     (speed > own).then(|| {
         format!(
             "A shorter stretch was faster: {speed:.1} m/s against {own:.1}, \
@@ -79,7 +89,7 @@ fn rival(case: &Case) -> Option<String> {
 }
 
 fn gaps(case: &Case) -> Option<String> {
-    let times = case.times();
+    let times = case.moving.times();
     let steps: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).collect();
     let usual = median(&steps);
     let long: Vec<usize> =
@@ -87,8 +97,9 @@ fn gaps(case: &Case) -> Option<String> {
     let longest =
         *long.iter().max_by(|a, b| steps[**a].total_cmp(&steps[**b]))?;
     Some(format!(
-        "Gaps in the log: {}; the longest is {:.2} s from t = {:.2} s, where \
+        "Gaps in the {}: {}; the longest is {:.2} s from t = {:.2} s, where \
          rows are {usual:.2} s apart otherwise.",
+        case.moving.log.word(),
         long.len(),
         steps[longest],
         times[longest]
@@ -97,7 +108,7 @@ fn gaps(case: &Case) -> Option<String> {
 
 fn satellites(case: &Case) -> Option<String> {
     let counts: Vec<f64> =
-        case.rows().iter().filter_map(|fix| fix.satellites).collect();
+        case.moving.rows().iter().filter_map(|fix| fix.satellites).collect();
     let few = counts.iter().filter(|count| **count < FEW).count();
     let least = counts.iter().copied().fold(f64::INFINITY, f64::min);
     (few > 0).then(|| {
@@ -125,14 +136,14 @@ fn far(case: &Case) -> Option<String> {
 
 /// The way by the speeds against that by the positions.
 fn way(case: &Case) -> Option<String> {
-    let (times, speeds) = (case.times(), &case.recorded);
+    let (times, speeds) = (case.moving.times(), &case.recorded);
     let steps = times.windows(2).zip(speeds.windows(2));
     let by_speeds: f64 =
         steps.map(|(t, v)| 0.5 * (v[0] + v[1]) * (t[1] - t[0])).sum();
-    let end = case.distances().last().copied()?;
-    let by_track = case.ground.along(0.0, end);
+    let (first, end) = case.ends();
+    let by_track = case.ground.along(first, end);
     let differ = (by_speeds - by_track).abs() > WAY * by_track;
-    (differ && case.log.kind != SpeedKind::Positions).then(|| {
+    (differ && !is_by_positions(case)).then(|| {
         format!(
             "By its speeds the sensor went {by_speeds:.0} m along the slope, \
              by its positions on the track {by_track:.0} m: {:.0} % apart.",
@@ -141,12 +152,19 @@ fn way(case: &Case) -> Option<String> {
     })
 }
 
+/// Whether the speeds are made of the positions.
+fn is_by_positions(case: &Case) -> bool {
+    let kind = case.moving.log.kind;
+    matches!(kind, SpeedKind::Positions | SpeedKind::Front)
+}
+
 /// The receiver's speeds against those of its positions, where it is fast.
 fn receiver(case: &Case) -> Option<String> {
-    if case.log.kind == SpeedKind::Positions {
+    if is_by_positions(case) {
         return None;
     }
-    let level = &case.level[case.phase.first..=case.phase.last];
+    let level =
+        &case.moving.level[case.moving.phase.first..=case.moving.phase.last];
     let by_positions = level
         .iter()
         .zip(case.distances())
@@ -173,7 +191,7 @@ fn receiver(case: &Case) -> Option<String> {
 }
 
 fn kind(case: &Case) -> Option<String> {
-    match case.log.kind {
+    match case.moving.log.kind {
         SpeedKind::Whole | SpeedKind::Along => None,
         SpeedKind::Ground => Some(
             "The receiver's speed over ground knows nothing of the slope: \
@@ -186,11 +204,25 @@ fn kind(case: &Case) -> Option<String> {
              lower, and errors are correlated."
                 .to_owned(),
         ),
+        SpeedKind::Front => Some(
+            "Mean speeds between positions share a position with the one \
+             before and the one behind: where the errors of positions are \
+             independent, those of such speeds are correlated by -1/2. \
+             Distances are taken for that; speeds need a noise that knows it."
+                .to_owned(),
+        ),
     }
 }
 
 /// The log's heights against the terrain, or by themselves.
 fn heights(case: &Case) -> Option<String> {
+    if case.terrain.is_none() && case.moving.log.is_front() {
+        return Some(
+            "The elevations are the front's, which is the top of the flow \
+             and not the ground. A terrain model is better."
+                .to_owned(),
+        );
+    }
     if case.terrain.is_none() {
         return Some(
             "The elevations are the log's: a receiver's heights err by \
@@ -207,9 +239,10 @@ fn heights(case: &Case) -> Option<String> {
     let high = over.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     (high - low > WANDER).then(|| {
         format!(
-            "The log's heights are {low:.0} to {high:.0} m over the terrain \
+            "The {}'s heights are {low:.0} to {high:.0} m over the terrain \
              model, which a constant offset (an ellipsoid's height) does not \
-             explain; they are not used."
+             explain; they are not used.",
+            case.moving.log.word()
         )
     })
 }
@@ -229,13 +262,37 @@ fn holes(case: &Case) -> Option<String> {
 
 /// A track that ends higher than it begins.
 fn climbs(case: &Case) -> Option<String> {
-    let end = case.distances().last().copied()?;
-    let drop = case.ground.at(0.0)? - case.ground.at(end)?;
+    let (first, end) = case.ends();
+    let drop = case.ground.at(first)? - case.ground.at(end)?;
     (drop <= 0.0).then(|| {
         format!(
             "The recording ends {:.1} m higher than it begins: is this the \
              avalanche? --from and --to take another part.",
             -drop
         )
+    })
+}
+
+/// How a front starts, and what it is.
+fn start(case: &Case) -> Option<String> {
+    let speed = case.recorded.first()?;
+    case.moving.log.is_front().then(|| {
+        format!(
+            "A front is not the mass centre that the model moves, and its \
+             points at the sides are to be left out. All distances are from \
+             its first position, whose error they share. The speed there, \
+             {speed:.2} m/s, is by the first three distances: write 0 in \
+             event.toml if the mass was released then."
+        )
+    })
+}
+
+/// Recordings of one avalanche without a clock that they share.
+fn clock(case: &Case) -> Option<String> {
+    (case.several && case.start.is_none()).then(|| {
+        "By their clocks the recordings do not move at one time: each event \
+         has a clock of its own. If they are of one avalanche, write the \
+         moments of their t = 0 as event.start."
+            .to_owned()
     })
 }

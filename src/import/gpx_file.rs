@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::clock::{Moment, moment};
-use super::log::{Fix, Log, SpeedKind};
+use super::log::{Fix, Frame, Log, SpeedKind};
 use crate::error::{Error, Result};
 use crate::io::{MOST_ROWS, place, quoted};
 
@@ -94,7 +94,8 @@ fn log_of(
         )
     });
     let doubts = lost.into_iter().collect();
-    Log { fixes, is_geographic: true, kind, begin, said, doubts }
+    let path = path.to_owned();
+    Log { path, fixes, frame: Frame::Degrees, kind, begin, said, doubts }
 }
 
 #[cfg(test)]

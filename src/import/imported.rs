@@ -13,7 +13,7 @@ use crate::io::parse_event;
 use crate::physics::friction::Laws;
 use crate::report::text::plain;
 
-/// An event made of a log.
+/// An event made of a recording.
 ///
 /// ```no_run
 /// use couloir::import::{Options, import};
@@ -27,6 +27,9 @@ use crate::report::text::plain;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Imported {
+    /// The folder of its files, within the one that all are written to; none
+    /// where there is one recording only.
+    pub folder: String,
     /// The event.toml.
     pub event: String,
     /// The track.csv.
@@ -45,25 +48,62 @@ pub struct Imported {
     pub doubts: Vec<String>,
 }
 
-/// Makes an event of a log, with a terrain model and a path where there are
-/// any. Nothing is written.
+/// Makes an event of one recording, with a terrain model and a path where
+/// there are any. Nothing is written.
+///
+/// # Errors
+/// As [`import_all`], and where there are several recordings.
+pub fn import(options: &Options) -> Result<Imported> {
+    let all = import_all(options)?;
+    let [one] = <[Imported; 1]>::try_from(all).map_err(|all| {
+        Error::input(format!(
+            "there are {} recordings; expected one: give one log or one \
+             front, or use `import_all`",
+            all.len()
+        ))
+    })?;
+    Ok(one)
+}
+
+/// Makes an event of each recording, on one path and one track. Nothing is
+/// written.
+///
+/// ```no_run
+/// use couloir::import::{Options, import_all};
+/// let mut options = Options::of_logs(["particle-1.csv", "particle-2.csv"]);
+/// options.front = Some("front.csv".into());
+/// options.terrain = Some("terrain.tif".into());
+/// options.path = Some("path.shp".into());
+/// for event in import_all(&options)? {
+///     couloir::io::write_all("events".as_ref(), &event.files())?;
+/// }
+/// # Ok::<(), couloir::Error>(())
+/// ```
 ///
 /// # Errors
 /// An input error where a file is not what it should be, or the files do not
 /// belong together; its message names the file and the line, what was found,
 /// what was expected, and the mend.
-pub fn import(options: &Options) -> Result<Imported> {
-    let case = work_out(options).map_err(|e| e.on_page("event"))?;
+pub fn import_all(options: &Options) -> Result<Vec<Imported>> {
+    let mut folders = options.folders().into_iter();
+    let cases = work_out(options).map_err(|e| e.on_page("event"))?.into_iter();
+    cases.map(|case| of(case, folders.next().unwrap_or_default())).collect()
+}
+
+/// What one recording ends in.
+fn of(case: Case, folder: String) -> Result<Imported> {
+    let (first, last) = case.ends();
     let lines = |all: Vec<String>| -> Vec<String> {
         all.iter().map(|text| plain(text)).collect()
     };
     let mut imported = Imported {
+        folder,
         event: event::toml(&case),
         track: event::track(&case),
         recording: event::recording(&case),
         picture: picture::draw(&case),
-        begin: case.begin(),
-        length: case.distances().last().copied().unwrap_or(0.0),
+        begin: case.moving.begin(),
+        length: last - first,
         said: Vec::new(),
         doubts: lines(doubts(&case)),
     };
@@ -75,10 +115,11 @@ pub fn import(options: &Options) -> Result<Imported> {
 /// What was done, with the size of what came out.
 fn said(case: Case) -> Vec<String> {
     let top = case.recorded.iter().copied().fold(0.0, f64::max);
-    let way = case.distances().last().copied().unwrap_or(0.0);
-    let ends = case.ground.at(0.0).zip(case.ground.at(way));
+    let (first, last) = case.ends();
+    let way = last - first;
+    let ends = case.ground.at(first).zip(case.ground.at(last));
     let (from, to) = ends.unwrap_or_default();
-    let mut said = case.said;
+    let mut said = case.moving.said;
     said.push(format!(
         "The recording goes {way:.1} m far and {:.1} m down, from {from:.1} \
          to {to:.1} m; its top speed is {top:.2} m/s.",
@@ -127,8 +168,9 @@ impl Imported {
         text
     }
 
-    /// The files of the event folder, by their names.
-    pub fn files(&self) -> Vec<(&'static str, String)> {
+    /// The files of the event folder, by their names, with the recording's
+    /// own folder before them where there are several.
+    pub fn files(&self) -> Vec<(String, String)> {
         let texts = [
             self.event.clone(),
             self.track.clone(),
@@ -136,7 +178,11 @@ impl Imported {
             self.picture.clone(),
             self.told(),
         ];
-        FILES.into_iter().zip(texts).collect()
+        let name = |file: &str| match self.folder.is_empty() {
+            true => file.to_owned(),
+            false => format!("{}/{file}", self.folder),
+        };
+        FILES.into_iter().map(name).zip(texts).collect()
     }
 }
 

@@ -1,5 +1,7 @@
 //! A log as it was read, whatever file it came in.
 
+use std::path::PathBuf;
+
 use super::clock::{DAY, Moment};
 use crate::error::{Error, Result};
 use crate::io::quoted;
@@ -11,7 +13,7 @@ pub(super) struct Fix {
     pub(super) row: u64,
     /// Seconds since the log's first row.
     pub(super) time: f64,
-    /// Longitude and latitude \[degrees\], or x and y \[m\].
+    /// Where it is, as its log's [`Frame`] says.
     pub(super) place: (f64, f64),
     /// Height \[m\], of whatever kind the log has.
     pub(super) height: Option<f64>,
@@ -32,14 +34,29 @@ pub(super) enum SpeedKind {
     Ground,
     /// The log has none: worked out from its positions, horizontal.
     Positions,
+    /// None, of a front: where it is at which time is the recording.
+    Front,
+}
+
+/// What the two numbers of a place are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Frame {
+    /// Longitude and latitude \[degrees\].
+    Degrees,
+    /// x (east) and y (north) \[m\].
+    Metres,
+    /// The horizontal distance along the path from its beginning \[m\], and
+    /// nothing.
+    Along,
 }
 
 /// A log.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Log {
+    /// Its file.
+    pub(super) path: PathBuf,
     pub(super) fixes: Vec<Fix>,
-    /// Whether places are longitudes and latitudes.
-    pub(super) is_geographic: bool,
+    pub(super) frame: Frame,
     pub(super) kind: SpeedKind,
     /// The first row on the log's own clock.
     pub(super) begin: Moment,
@@ -50,6 +67,19 @@ pub(super) struct Log {
 }
 
 impl Log {
+    pub(super) fn is_geographic(&self) -> bool {
+        self.frame == Frame::Degrees
+    }
+
+    pub(super) fn is_front(&self) -> bool {
+        self.kind == SpeedKind::Front
+    }
+
+    /// What it is called in sentences.
+    pub(super) fn word(&self) -> &'static str {
+        if self.is_front() { "front" } else { "log" }
+    }
+
     /// The moment that a user names, in seconds since the log's first row: a
     /// number of such seconds, or a clock's time where the log has one.
     pub(super) fn moment(&self, name: &str, text: &str) -> Result<f64> {

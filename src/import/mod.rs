@@ -1,22 +1,30 @@
-//! Event folders from the files that people have: the log of a GNSS sensor, a
-//! terrain model, a path.
+//! Event folders from the files that people have: the logs of GNSS sensors,
+//! the places of a front, a terrain model, a path.
 //!
 //! Each format is read in a file of its own (`table.rs`, `gpx_file.rs`,
-//! `grid.rs`, `outline.rs`); `work.rs` goes from there to an event, step by
-//! step, and says in sentences what it did. What it doubts is in `doubts.rs`.
+//! `esri_grid.rs`, `geotiff.rs`, `outline.rs`); `work.rs` goes from there to
+//! events, step by step (`moving.rs`, `along.rs`, `elevations.rs`,
+//! `together.rs`), and says in sentences what it did. What it doubts is in
+//! `doubts.rs`.
 
+mod along;
 mod case;
 mod clock;
 mod columns;
 mod crs;
 mod doubts;
+mod elevations;
+mod esri_grid;
 mod event;
+mod front;
+mod geotiff;
 mod gpx_file;
 mod grid;
 mod ground;
 mod imported;
 mod line;
 mod log;
+mod moving;
 mod options;
 mod outline;
 mod phase;
@@ -26,7 +34,8 @@ mod role;
 mod smooth;
 mod source;
 mod table;
+mod together;
 mod work;
 
-pub use imported::{FILES, Imported, import};
+pub use imported::{FILES, Imported, import, import_all};
 pub use options::Options;

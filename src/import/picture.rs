@@ -66,12 +66,12 @@ fn curve(canvas: &mut Canvas, axes: &Axes, pairs: &[(f64, f64)], pen: Pen) {
 /// The path from above, both directions to one scale, in metres from where
 /// the recording begins.
 fn from_above(canvas: &mut Canvas, frame: Frame, case: &Case) {
-    let taken = case.phase.first..=case.phase.last;
-    let origin = case.places[case.phase.first];
+    let taken = case.moving.phase.first..=case.moving.phase.last;
+    let origin = case.moving.places[case.moving.phase.first];
     let from = |all: &[Place]| -> Vec<Place> {
         all.iter().map(|p| (p.0 - origin.0, p.1 - origin.1)).collect()
     };
-    let own = from(&case.places[taken.clone()]);
+    let own = from(&case.moving.places[taken.clone()]);
     let line = from(case.line.places());
     let scale =
         |of: fn(&Place) -> f64| Scale::of(own.iter().map(of)).padded(0.15);
@@ -81,8 +81,8 @@ fn from_above(canvas: &mut Canvas, frame: Frame, case: &Case) {
         Labels { x: Some("to the east [m]"), y: Some("to the north [m]") };
     axes.draw(canvas, labels);
     canvas.clip(frame);
-    let before = from(&case.places[..case.phase.first]);
-    let after = from(&case.places[case.phase.last + 1..]);
+    let before = from(&case.moving.places[..case.moving.phase.first]);
+    let after = from(&case.moving.places[case.moving.phase.last + 1..]);
     dots(canvas, &axes, &before, CUT.faded(0.4));
     dots(canvas, &axes, &after, CUT.faded(0.4));
     dots(canvas, &axes, &own, Pen::new(MASS, 5.0));
@@ -117,7 +117,7 @@ fn elevations(canvas: &mut Canvas, frame: Frame, case: &Case) {
     let over = case.heights_over_terrain();
     let offset = if over.is_empty() { 0.0 } else { median(&over) };
     let distances = case.distances();
-    let own = case.rows().iter().zip(&distances);
+    let own = case.moving.rows().iter().zip(&distances);
     let own: Vec<_> = own
         .filter_map(|(fix, x)| Some((*x, fix.height? - offset)))
         .filter(|_| case.terrain.is_some())
@@ -141,13 +141,16 @@ fn elevations(canvas: &mut Canvas, frame: Frame, case: &Case) {
 }
 
 fn speeds(canvas: &mut Canvas, frame: Frame, case: &Case) {
-    let begin = case.begin();
-    let times = case.times();
+    let begin = case.moving.begin();
+    let times = case.moving.times();
     let length = times.last().copied().unwrap_or(0.0);
     let around = (0.4 * length).max(5.0);
-    let all = case.log.fixes.iter().zip(&case.speeds).enumerate();
+    let all =
+        case.moving.log.fixes.iter().zip(&case.moving.speeds).enumerate();
     let cut: Vec<_> = all
-        .filter(|(i, _)| !(case.phase.first..=case.phase.last).contains(i))
+        .filter(|(i, _)| {
+            !(case.moving.phase.first..=case.moving.phase.last).contains(i)
+        })
         .map(|(_, (fix, speed))| (fix.time - begin, *speed))
         .filter(|(t, _)| (-around..=length + around).contains(t))
         .collect();

@@ -9,6 +9,7 @@ pub(super) enum Role {
     Latitude,
     X,
     Y,
+    Along,
     Height,
     Speed,
     GroundSpeed,
@@ -58,7 +59,7 @@ const fn known(
     Known { role, name, columns, units }
 }
 
-const ROLES: [Known; 13] = [
+const ROLES: [Known; 14] = [
     known(
         Role::Time,
         "time",
@@ -85,6 +86,12 @@ const ROLES: [Known; 13] = [
     known(Role::Latitude, "lat", &["latitude", "lat"], ANGLES),
     known(Role::X, "x", &["x", "easting", "e"], LENGTHS),
     known(Role::Y, "y", &["y", "northing", "n"], LENGTHS),
+    known(
+        Role::Along,
+        "along",
+        &["along", "s", "distance", "chainage", "station"],
+        LENGTHS,
+    ),
     known(
         Role::Height,
         "height",
@@ -188,9 +195,17 @@ impl Role {
                 Self::East,
                 Self::Down,
             ],
-            Self::Longitude | Self::Latitude | Self::X | Self::Y => {
-                &[Self::Longitude, Self::Latitude, Self::X, Self::Y]
-            }
+            Self::Longitude
+            | Self::Latitude
+            | Self::X
+            | Self::Y
+            | Self::Along => &[
+                Self::Longitude,
+                Self::Latitude,
+                Self::X,
+                Self::Y,
+                Self::Along,
+            ],
             _ => &[],
         }
     }

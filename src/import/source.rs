@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use super::columns::Columns;
-use super::gpx_file;
-use super::grid::{self, Grid};
+use super::grid::Grid;
 use super::log::Log;
 use super::outline::{self, Outline};
-use super::table;
+use super::table::{self, Of};
+use super::{esri_grid, geotiff, gpx_file};
 use crate::error::{Error, Result};
 use crate::io::{place, quoted, read_any_text, read_bytes};
 
@@ -27,13 +27,22 @@ pub(super) fn log(path: &Path, columns: Option<&str>) -> Result<Log> {
              table of text only: leave it out",
         )),
         "gpx" => gpx_file::read(&text, path),
-        _ => table::read(&text, path, &named),
+        _ => table::read(&text, path, &named, Of::Sensor),
     }
 }
 
-/// A terrain model.
+/// The places of a front by time: a table.
+pub(super) fn front(path: &Path, columns: Option<&str>) -> Result<Log> {
+    let named = Columns::parse(columns.unwrap_or_default())?;
+    table::read(&read_any_text(path)?, path, &named, Of::Front)
+}
+
+/// A terrain model: GeoTIFF by its name, anything else as an ESRI ASCII grid.
 pub(super) fn terrain(path: &Path) -> Result<Grid> {
-    grid::read(&read_any_text(path)?, path)
+    match ending(path).as_str() {
+        "tif" | "tiff" => geotiff::read(&read_bytes(path)?, path),
+        _ => esri_grid::read(&read_any_text(path)?, path),
+    }
 }
 
 /// A path; beside a shapefile its projection.

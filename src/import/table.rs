@@ -8,7 +8,7 @@ use csv::{ByteRecord, StringRecord};
 
 use super::clock::{DAY, Moment, moment};
 use super::columns::{Column, Columns, Found};
-use super::log::{Fix, Log, SpeedKind};
+use super::log::{Fix, Frame, Log, SpeedKind};
 use super::role::Role;
 use crate::error::{Error, Result};
 use crate::io::{MOST_ROWS, place, quoted};
@@ -26,7 +26,17 @@ struct Reader<'r> {
     separator: u8,
     found: Found,
     kind: SpeedKind,
-    is_geographic: bool,
+    frame: Frame,
+}
+
+/// What a table is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Of {
+    /// One sensor.
+    Sensor,
+    /// The points of a front: those of one time are one place, their mean
+    /// (Heredia et al. 2020, equation 12).
+    Front,
 }
 
 /// What was read and what was passed over.
@@ -38,10 +48,18 @@ struct Rows {
     empty: usize,
     /// Not after the row before.
     back: Vec<u64>,
+    /// How many rows the last place is the mean of, and the most of any.
+    points: usize,
+    most_points: usize,
 }
 
 /// Reads a table with a header.
-pub(super) fn read(text: &str, path: &Path, columns: &Columns) -> Result<Log> {
+pub(super) fn read(
+    text: &str,
+    path: &Path,
+    columns: &Columns,
+    of: Of,
+) -> Result<Log> {
     let separator = separator(text);
     let mut source = csv::ReaderBuilder::new()
         .has_headers(false)
@@ -58,7 +76,7 @@ pub(super) fn read(text: &str, path: &Path, columns: &Columns) -> Result<Log> {
         let record = StringRecord::from_byte_record_lossy(bytes.clone());
         match &reader {
             None => {
-                let new = Reader::new(path, separator, columns, &record);
+                let new = Reader::new(path, separator, columns, &record, of);
                 reader = Some(new.map_err(|what| at(path, line, &what))?);
             }
             Some(reader) => reader.take(&record, line, &mut rows)?,
@@ -102,35 +120,69 @@ fn kind(found: &Found) -> (SpeedKind, &'static [Role]) {
     }
 }
 
+/// What the places are, and the columns of which they are made.
+fn frame(found: &Found, of: Of) -> Option<(Frame, &'static [Role])> {
+    const ALL: [(Frame, &[Role]); 3] = [
+        (Frame::Degrees, &[Role::Longitude, Role::Latitude]),
+        (Frame::Metres, &[Role::X, Role::Y]),
+        (Frame::Along, &[Role::Along]),
+    ];
+    // A distance alone is a place of a front, along the path that it has.
+    let known = if of == Of::Front { &ALL[..] } else { &ALL[..2] };
+    let has = |roles: &[Role]| roles.iter().all(|r| found.contains_key(r));
+    known.iter().copied().find(|(_, roles)| has(roles))
+}
+
+impl Rows {
+    /// Takes another point of the last place's time into the mean.
+    fn join(&mut self, new: Fix) {
+        let Some(last) = self.fixes.last_mut() else { return };
+        self.points += 1;
+        self.most_points = self.most_points.max(self.points);
+        let share = 1.0 / self.points as f64;
+        let mean = |old: f64, new: f64| old + share * (new - old);
+        last.place.0 = mean(last.place.0, new.place.0);
+        last.place.1 = mean(last.place.1, new.place.1);
+        last.height = last.height.zip(new.height).map(|(a, b)| mean(a, b));
+    }
+}
+
 impl<'r> Reader<'r> {
     fn new(
         path: &'r Path,
         separator: u8,
         columns: &Columns,
         header: &StringRecord,
+        of: Of,
     ) -> Result<Self, String> {
         let header: Vec<&str> = header.iter().collect();
         let found = columns.find(&header)?;
         let has = |roles: &[Role]| roles.iter().all(|r| found.contains_key(r));
-        let is_geographic = has(&[Role::Longitude, Role::Latitude]);
-        let is_placed = is_geographic || has(&[Role::X, Role::Y]);
-        if !(has(&[Role::Time]) && is_placed) {
+        let frame = frame(&found, of);
+        let (Some((frame, of_place)), true) = (frame, has(&[Role::Time]))
+        else {
             let lacks = if has(&[Role::Time]) { "places" } else { "times" };
+            let or = match of {
+                Of::Sensor => "",
+                Of::Front => ", or s (along the path)",
+            };
             return Err(format!(
                 "the header is {}, in which no column is known for {lacks}; \
-                 expected columns for time, and for lon and lat or x and y: \
-                 name them, as in --columns time=UTC,lon=X,lat=Y",
+                 expected columns for time, and for lon and lat or x and y\
+                 {or}: name them, as in --columns time=UTC,lon=X,lat=Y",
                 quoted(&header.join(","))
             ));
-        }
-        let (kind, of_speed) = kind(&found);
-        // Of speeds only those that are used stay.
-        let rivals = Role::Speed.rivals();
+        };
+        let (kind, of_speed) = match of {
+            Of::Sensor => kind(&found),
+            Of::Front => (SpeedKind::Front, &[][..]),
+        };
+        // Of speeds and of places only those that are used stay.
         let mut found = found;
-        found.retain(|role, _| {
-            !rivals.contains(role) || of_speed.contains(role)
-        });
-        Ok(Self { path, separator, found, kind, is_geographic })
+        let rivals = [Role::Speed.rivals(), Role::X.rivals()].concat();
+        let used = [of_speed, of_place].concat();
+        found.retain(|role, _| !rivals.contains(role) || used.contains(role));
+        Ok(Self { path, separator, found, kind, frame })
     }
 
     /// Takes a row, where it has what is needed.
@@ -162,12 +214,17 @@ impl<'r> Reader<'r> {
         if last.is_some_and(|last| time < last - 0.5 * DAY) {
             time += DAY;
         }
+        if last == Some(time) && self.kind == SpeedKind::Front {
+            rows.join(fix);
+            return Ok(());
+        }
         if last.is_some_and(|last| time <= last) {
             rows.back.push(line);
             return Ok(());
         }
         (fix.time, fix.row) = (time, line);
         rows.fixes.push(fix);
+        rows.points = 1;
         Ok(())
     }
 
@@ -195,16 +252,22 @@ impl<'r> Reader<'r> {
     /// receiver says that it had no satellites.
     fn fix(&self, record: &StringRecord) -> Result<Option<Fix>, String> {
         let number = |role| self.number(record, role);
-        let (across, up) = match self.is_geographic {
-            true => (number(Role::Longitude)?, number(Role::Latitude)?),
-            false => (number(Role::X)?, number(Role::Y)?),
+        let (across, up) = match self.frame {
+            Frame::Degrees => {
+                (number(Role::Longitude)?, number(Role::Latitude)?)
+            }
+            Frame::Metres => (number(Role::X)?, number(Role::Y)?),
+            Frame::Along => (number(Role::Along)?, Some(0.0)),
         };
         let (Some(x), Some(y)) = (across, up) else { return Ok(None) };
         let is_lost = number(Role::FixType)?.is_some_and(|fix| fix < 2.0);
-        if is_lost || (x == 0.0 && y == 0.0) {
+        // What a receiver writes before it knows where it is.
+        let is_nowhere = self.kind != SpeedKind::Front && (x, y) == (0.0, 0.0);
+        if is_lost || is_nowhere {
             return Ok(None);
         }
-        if self.is_geographic && !(x.abs() <= 180.0 && y.abs() < 90.0) {
+        let is_geographic = self.frame == Frame::Degrees;
+        if is_geographic && !(x.abs() <= 180.0 && y.abs() < 90.0) {
             return Err(format!(
                 "the place is {x}, {y}; expected a longitude and a latitude \
                  in degrees: are these metres, or is the unit another? name \
@@ -212,7 +275,9 @@ impl<'r> Reader<'r> {
             ));
         }
         let speed = self.speed(record)?;
-        if speed.is_none() && self.kind != SpeedKind::Positions {
+        let has_speeds =
+            !matches!(self.kind, SpeedKind::Positions | SpeedKind::Front);
+        if speed.is_none() && has_speeds {
             return Ok(None);
         }
         let height = number(Role::Height)?;
@@ -227,7 +292,7 @@ impl<'r> Reader<'r> {
         let (north, east) = (number(Role::North)?, number(Role::East)?);
         let level = north.zip(east).map(|(n, e)| n.hypot(e));
         Ok(match self.kind {
-            SpeedKind::Positions => None,
+            SpeedKind::Positions | SpeedKind::Front => None,
             SpeedKind::Along => number(Role::Speed)?,
             SpeedKind::Ground => number(Role::GroundSpeed)?.or(level),
             SpeedKind::Whole => {
@@ -298,10 +363,17 @@ impl<'r> Reader<'r> {
                 ),
             ));
         }
-        let (said, doubts) = (self.said(count), Self::doubts(&rows));
-        let Self { is_geographic, kind, .. } = self;
-        let fixes = rows.fixes;
-        Ok(Log { fixes, is_geographic, kind, begin, said, doubts })
+        let (mut said, doubts) = (self.said(count), Self::doubts(&rows));
+        if rows.most_points > 1 {
+            said.push(format!(
+                "The points of one time, up to {}, are one place, their mean \
+                 (Heredia et al. 2020, equation 12).",
+                rows.most_points
+            ));
+        }
+        let Self { frame, kind, .. } = self;
+        let (path, fixes) = (self.path.to_owned(), rows.fixes);
+        Ok(Log { path, fixes, frame, kind, begin, said, doubts })
     }
 
     fn said(&self, count: usize) -> Vec<String> {
@@ -359,7 +431,32 @@ mod tests {
 
     fn log(text: &str, columns: &str) -> Result<Log> {
         let columns = Columns::parse(columns)?;
-        read(text, Path::new("log.csv"), &columns)
+        read(text, Path::new("log.csv"), &columns, Of::Sensor)
+    }
+
+    #[test]
+    fn the_points_of_a_front_are_one_place_each_time() {
+        let text = "t,x,y,z,v\n0,0,0,90,1\n0,4,2,94,1\n0,2,1,95,1\n\
+                    1,5,5,80,1\n";
+        let path = Path::new("front.csv");
+        let front = read(text, path, &Columns::default(), Of::Front).unwrap();
+        assert_eq!((front.fixes.len(), front.kind), (2, SpeedKind::Front));
+        assert_eq!(front.fixes[0].place, (2.0, 1.0));
+        assert_eq!(front.fixes[0].height, Some(93.0));
+        assert_eq!(front.fixes[1].place, (5.0, 5.0));
+        assert!(front.said[2].contains("up to 3"), "{:?}", front.said);
+        assert!(!front.said[0].contains("\"v\""), "{:?}", front.said);
+        // By a distance alone, where it is no sensor.
+        let text = "t,s\n0,1\n1,3\n";
+        let front = read(text, path, &Columns::default(), Of::Front).unwrap();
+        assert_eq!(front.frame, Frame::Along);
+        assert_eq!(front.fixes[1].place, (3.0, 0.0));
+        let error = log(text, "").unwrap_err().to_string();
+        assert!(error.contains("no column is known for places"), "{error}");
+        let text = "t,u\n0,1\n1,3\n";
+        let error = read(text, path, &Columns::default(), Of::Front);
+        let error = error.unwrap_err().to_string();
+        assert!(error.contains("or s (along the path)"), "{error}");
     }
 
     #[test]

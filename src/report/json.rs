@@ -180,6 +180,7 @@ mod tests {
                 "model",
                 "notes",
                 "parameters",
+                "predictive",
                 "program",
                 "schema",
                 "seed",

@@ -83,7 +83,14 @@ fn one_value_and_one_parameter() {
     let names: Vec<_> = pictures(&report).iter().map(|p| p.name).collect();
     assert_eq!(
         names,
-        ["recording", "densities", "traces", "ranks", "residuals"]
+        [
+            "recording",
+            "densities",
+            "traces",
+            "ranks",
+            "residuals",
+            "predictive"
+        ]
     );
 }
 
