@@ -47,7 +47,7 @@ class AsTheCommand(unittest.TestCase):
             )
 
     def test_diagnose(self):
-        for events, words in (((), []), (EVENT, [EVENT])):
+        for events, words in ((None, []), (EVENT, [EVENT])):
             found = couloir.diagnose(events, quick=True, seed=3, quiet=True)
             other = printed("diagnose", "--quick", "--seed=3", *words)
             self.same(found.document, other)
