@@ -14,8 +14,9 @@ pub(crate) fn steps(page: &str) -> Vec<Step> {
     let mut is_new = false;
     for part in parts(page) {
         let commands = part.replace("cargo run --release --", "couloir");
-        let is_commands = commands.lines().all(|l| l.starts_with("couloir "));
-        if is_commands && !part.is_empty() {
+        let is_commands = !part.is_empty()
+            && commands.lines().all(|line| line.starts_with("couloir "));
+        if is_commands {
             let of = |line: &str| Step { command: line.into(), shown: None };
             steps.extend(commands.lines().map(of));
         } else if is_new && let Some(last) = steps.last_mut() {
@@ -26,8 +27,8 @@ pub(crate) fn steps(page: &str) -> Vec<Step> {
     steps
 }
 
-/// The blocks of plain text; a heading between two of them is one that says
-/// nothing, so that no command owns a block of another section.
+/// The blocks of plain text. A heading counts as an empty one, so that no
+/// command owns a block of another section; so does a block of code.
 fn parts(page: &str) -> Vec<String> {
     let mut parts = Vec::new();
     let mut block: Option<(bool, String)> = None;

@@ -44,30 +44,29 @@ def numbers(place: str, column: Any) -> list[float]:
     return [number(f"{place}[{i}]", value) for i, value in enumerate(values)]
 
 
-def pair(place: str, columns: Any, names: tuple[str, str]) -> dict[str, Any]:
+def pair(
+    place: str, columns: Any, names: tuple[str, str]
+) -> dict[str, list[float]]:
     """Two columns by their names."""
     try:
-        first, second = columns
+        both = zip(names, columns, strict=True)
+        every = {name: (f"{place} {name}", one) for name, one in both}
     except (TypeError, ValueError):
         said = f"two columns of numbers, {names[0]} and {names[1]}"
         raise wrong(place, columns, said) from None
-    return {names[0]: first, names[1]: second}
+    return {name: numbers(*one) for name, one in every.items()}
 
 
-def csv(place: str, columns: Mapping[str, Any]) -> str:
+def csv(place: str, columns: Mapping[str, list[float]]) -> str:
     """Columns of numbers, which read back to the same bits."""
-    table = {
-        name: numbers(f"{place}: {name}", column)
-        for name, column in columns.items()
-    }
-    lengths = {name: len(column) for name, column in table.items()}
+    lengths = {name: len(column) for name, column in columns.items()}
     if len(set(lengths.values())) > 1:
         raise InputError(
             f"{place}: found columns of different lengths {lengths}; expected "
             "as many numbers in each"
         )
-    rows = [",".join(map(repr, row)) for row in zip(*table.values())]
-    return "\n".join([",".join(table), *rows]) + "\n"
+    rows = [",".join(map(repr, row)) for row in zip(*columns.values())]
+    return "\n".join([",".join(columns), *rows]) + "\n"
 
 
 def wrong(place: str, found: Any, expected: str) -> InputError:

@@ -161,7 +161,8 @@ def _subjects(
         return [events]
     if not isinstance(events, Sequence) or not events:
         raise wrong("events", events, "an event, or several in a list")
-    return list(events)
+    every: Sequence[Any] = events
+    return list(every)
 
 
 def _judged(kind: Any, one: Mapping[str, Any]) -> Any:

@@ -10,7 +10,15 @@ from pathlib import Path
 from types import NoneType
 
 from couloir._couloir import InputError
-from couloir.column import Column, csv, number, pair, text, wrong
+from couloir.column import (
+    Column,
+    csv,
+    number,
+    numbers,
+    pair,
+    text,
+    wrong,
+)
 
 QUANTITIES = ("velocity", "position", "acceleration")
 
@@ -67,9 +75,12 @@ class Event:
         of different lengths.
         """
         quantity, values = self._recorded()
-        columns = {"t": self.times, quantity: values}
+        columns = {
+            "t": numbers("times", self.times),
+            quantity: numbers(quantity, values),
+        }
         if self.sigma is not None:
-            columns["sigma"] = self.sigma
+            columns["sigma"] = numbers("sigma", self.sigma)
         track = pair("track", self.track, ("x", "z"))
         files = {
             "event.toml": self._toml(quantity),

@@ -13,7 +13,7 @@ from couloir.column import wrong
 from couloir.event import Event
 from couloir.progress import Line
 
-Subject = str | PathLike[str] | Event
+Subject = str | bytes | PathLike[str] | PathLike[bytes] | Event
 
 
 def work(
@@ -57,7 +57,9 @@ def _named(
     """A message with an event's name for the folder that held its arrays."""
     for subject, path in zip(subjects, paths):
         if isinstance(subject, Event):
-            told = told.replace(path + os.sep, f"{subject.name}: ")
+            name = subject.name
+            name = name if name.isprintable() else repr(name)
+            told = told.replace(path + os.sep, f"{name}: ")
     return told
 
 
