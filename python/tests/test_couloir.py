@@ -47,7 +47,7 @@ class AsTheCommand(unittest.TestCase):
             )
 
     def test_diagnose(self):
-        for events, words in (((), []), (EVENT, [EVENT])):
+        for events, words in ((None, []), (EVENT, [EVENT])):
             found = couloir.diagnose(events, quick=True, seed=3, quiet=True)
             other = printed("diagnose", "--quick", "--seed=3", *words)
             self.same(found.document, other)
@@ -140,6 +140,8 @@ class Running(unittest.TestCase):
     def test_ctrl_c_is_heard(self):
         code = (
             "import couloir, signal, threading, os, time\n"
+            # Where the tests run in the background, it is ignored.
+            "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
             "kill = os.getpid(), signal.SIGINT\n"
             "threading.Timer(1, os.kill, kill).start()\n"
             "begun = time.monotonic()\n"

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from os import PathLike
 from typing import Any
 
+from couloir.column import wrong
 from couloir.event import Event
 from couloir.parameter import Parameter, of, parameters
 from couloir.result import Result, opened
@@ -102,7 +104,7 @@ class Diagnosis(Result):
 
 
 def diagnose(
-    events: Subject | Sequence[Subject] = (),
+    events: Subject | Sequence[Subject] | None = None,
     *,
     friction: str | None = None,
     noise: str | None = None,
@@ -131,9 +133,7 @@ def diagnose(
         pooled=pooled, rate=rate, thin=thin, check_rate=check_rate, seed=seed,
         quick=quick,
     )  # fmt: skip
-    single = isinstance(events, (str, Event)) or hasattr(events, "__fspath__")
-    subjects: Any = [events] if single else events
-    made = opened(work("diagnose", options, list(subjects), quiet),
+    made = opened(work("diagnose", options, _subjects(events), quiet),
                   "diagnosis.json")  # fmt: skip
     known = made["document"]
     return of(
@@ -149,6 +149,20 @@ def diagnose(
         parameters=parameters(known["parameters"]),
         **made,
     )
+
+
+def _subjects(
+    events: Subject | Sequence[Subject] | None,
+) -> list[Subject]:
+    """One event or several as a list; nothing for the built-in one."""
+    if events is None:
+        return []
+    if isinstance(events, (str, bytes, PathLike, Event)):
+        return [events]
+    if not isinstance(events, Sequence) or not events:
+        raise wrong("events", events, "an event, or several in a list")
+    every: Sequence[Any] = events
+    return list(every)
 
 
 def _judged(kind: Any, one: Mapping[str, Any]) -> Any:

@@ -3,13 +3,22 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from numbers import Real
 from pathlib import Path
+from types import NoneType
 
 from couloir._couloir import InputError
-
-Column = Iterable[float]
+from couloir.column import (
+    Column,
+    csv,
+    number,
+    numbers,
+    pair,
+    text,
+    wrong,
+)
 
 QUANTITIES = ("velocity", "position", "acceleration")
 
@@ -60,20 +69,27 @@ class Event:
     """What a diagnosis has added, by their labels."""
 
     def files(self) -> dict[str, str]:
-        """The files of its event folder, by their names."""
+        """The files of its event folder, by their names.
+
+        Raises `InputError` for what is no number or no text, and for columns
+        of different lengths.
+        """
         quantity, values = self._recorded()
-        columns = {"t": self.times, quantity: values}
+        columns = {
+            "t": numbers("times", self.times),
+            quantity: numbers(quantity, values),
+        }
         if self.sigma is not None:
-            columns["sigma"] = self.sigma
-        x, z = self.track
+            columns["sigma"] = numbers("sigma", self.sigma)
+        track = pair("track", self.track, ("x", "z"))
         files = {
             "event.toml": self._toml(quantity),
-            "track.csv": _csv({"x": x, "z": z}),
-            "recording.csv": _csv(columns),
+            "track.csv": csv("track", track),
+            "recording.csv": csv("recording", columns),
         }
-        if isinstance(self.depth, tuple):
-            x, depth = self.depth
-            files["depth.csv"] = _csv({"x": x, "depth": depth})
+        if self._depth_varies():
+            depths = pair("depth", self.depth, ("x", "depth"))
+            files["depth.csv"] = csv("depth", depths)
         return files
 
     def save(self, folder: str | Path) -> None:
@@ -101,61 +117,62 @@ class Event:
             )
         return given[0]
 
+    def _depth_varies(self) -> bool:
+        return not isinstance(self.depth, (Real, str, NoneType))
+
     def _toml(self, quantity: str) -> str:
-        depth = '"depth.csv"' if isinstance(self.depth, tuple) else self.depth
-        tables: dict[str, dict[str, str | float | None]] = {
-            "track": {"file": _text("track.csv")},
-            "release": {"x": self.release, "velocity": self.release_velocity},
+        depth = _text("depth", "depth.csv") if self._depth_varies() else (
+            _number("depth", self.depth)
+        )  # fmt: skip
+        tables: dict[str, dict[str, str | None]] = {
+            "track": {"file": _text("track", "track.csv")},
+            "release": {
+                "x": _number("release", self.release),
+                "velocity": _number("release_velocity", self.release_velocity),
+            },
             "flow": {"depth": depth},
             "recording": {
-                "file": _text("recording.csv"),
-                "quantity": _text(quantity),
-                "window": self.window,
+                "file": _text("recording", "recording.csv"),
+                "quantity": _text("quantity", quantity),
+                "window": _number("window", self.window),
             },
             "model": {
-                "friction": _text(self.friction),
-                "noise": _text(self.noise),
-                "mechanisms": _list(self.mechanisms),
+                "friction": _text("friction", self.friction),
+                "noise": _text("noise", self.noise),
+                "mechanisms": _list("mechanisms", self.mechanisms),
             },
-            "priors": {
-                _text(name): _text(prior)
-                for name, prior in self.priors.items()
-            },
+            "priors": _priors(self.priors),
         }
-        text = f"name = {_text(self.name)}\n"
+        lines = [f"name = {_text('name', self.name)}"]
         for name, table in tables.items():
-            entries = {k: v for k, v in table.items() if v is not None}
-            if entries:
-                text += f"\n[{name}]\n"
-            for key, value in entries.items():
-                text += f"{key} = {_value(value)}\n"
-        return text
+            known = {k: v for k, v in table.items() if v is not None}
+            if known:
+                lines += ["", f"[{name}]"]
+                lines += [f"{key} = {value}" for key, value in known.items()]
+        return "\n".join(lines) + "\n"
 
 
-def _text(text: str) -> str:
-    """A text as TOML has it, of which JSON's is one form."""
-    return json.dumps(text)
+def _text(place: str, value: object) -> str:
+    """A text as TOML has it: as in JSON, but for the character 127."""
+    written = json.dumps(text(place, value), ensure_ascii=False)
+    return written.replace("\x7f", "\\u007f")
 
 
-def _list(texts: Sequence[str]) -> str | None:
-    return f"[{', '.join(map(_text, texts))}]" if texts else None
+def _number(place: str, value: object) -> str | None:
+    return None if value is None else repr(number(place, value))
 
 
-def _value(value: str | float) -> str:
-    return value if isinstance(value, str) else repr(float(value))
+def _list(place: str, values: Sequence[str]) -> str | None:
+    if isinstance(values, str) or not isinstance(values, Sequence):
+        raise wrong(place, values, "a list of texts")
+    every = [_text(f"{place}[{i}]", one) for i, one in enumerate(values)]
+    return f"[{', '.join(every)}]" if every else None
 
 
-def _csv(columns: Mapping[str, Column]) -> str:
-    """Columns of numbers, which read back to the same bits."""
-    table = {
-        name: [repr(float(x)) for x in column]
-        for name, column in columns.items()
+def _priors(priors: Mapping[str, str]) -> dict[str, str | None]:
+    if not isinstance(priors, Mapping):
+        raise wrong("priors", priors, "priors by parameter")
+    return {
+        _text("a name in priors", name): _text(f"priors[{name!r}]", prior)
+        for name, prior in priors.items()
     }
-    lengths = {name: len(column) for name, column in table.items()}
-    if len(set(lengths.values())) > 1:
-        raise InputError(
-            f"found columns of different lengths {lengths}; expected as many "
-            "numbers in each"
-        )
-    rows = [",".join(row) for row in zip(*table.values())]
-    return "\n".join([",".join(table), *rows]) + "\n"

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from os import PathLike
 
 from couloir import _couloir
+from couloir.column import wrong
 from couloir.result import Figure
 from couloir.work import work
 
@@ -55,6 +56,8 @@ def import_log(
         "smooth": smooth, "threshold": threshold, "margin": margin,
         "from": start, "to": end, "name": name,
     }  # fmt: skip
+    if not isinstance(log, (str, bytes, PathLike)):
+        raise wrong("log", log, "the path of a log")
     made = work("import", options, [log])
     files = made.files()
     return Imported(files["import.txt"].decode(), files, made)

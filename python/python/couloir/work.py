@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import os
 import tempfile
 from collections.abc import Mapping, Sequence
-from os import PathLike, fspath
+from os import PathLike, fsdecode
 from pathlib import Path
 
 from couloir import _couloir
+from couloir.column import wrong
 from couloir.event import Event
 from couloir.progress import Line
 
-Subject = str | PathLike[str] | Event
+Subject = str | bytes | PathLike[str] | PathLike[bytes] | Event
 
 
 def work(
@@ -22,17 +24,20 @@ def work(
 ) -> _couloir.Made:
     """What the command makes of events with these options."""
     line = None if quiet else Line()
-    try:
-        with tempfile.TemporaryDirectory(prefix="couloir-") as folder:
-            paths = [
-                _path(one, Path(folder) / f"event-{i}")
-                for i, one in enumerate(subjects)
-            ]
-            words = [command, *_words(options), "--", *paths]
+    with tempfile.TemporaryDirectory(prefix="couloir-") as folder:
+        paths = [
+            _path(one, Path(folder) / f"event-{i}")
+            for i, one in enumerate(subjects)
+        ]
+        words = [command, *_words(options), "--", *paths]
+        try:
             return _couloir.made(words, line)
-    finally:
-        if line is not None:
-            line.end()
+        except _couloir.InputError as error:
+            told = _named(str(error), subjects, paths)
+            raise _couloir.InputError(told) from None
+        finally:
+            if line is not None:
+                line.end()
 
 
 def _path(subject: Subject, folder: Path) -> str:
@@ -40,7 +45,22 @@ def _path(subject: Subject, folder: Path) -> str:
     if isinstance(subject, Event):
         subject.save(folder)
         return str(folder)
-    return fspath(subject)
+    try:
+        return fsdecode(subject)
+    except TypeError:
+        raise wrong("event", subject, "an event folder or an Event") from None
+
+
+def _named(
+    told: str, subjects: Sequence[Subject], paths: Sequence[str]
+) -> str:
+    """A message with an event's name for the folder that held its arrays."""
+    for subject, path in zip(subjects, paths):
+        if isinstance(subject, Event):
+            name = subject.name
+            name = name if name.isprintable() else repr(name)
+            told = told.replace(path + os.sep, f"{name}: ")
+    return told
 
 
 def _words(options: Mapping[str, object]) -> list[str]:
