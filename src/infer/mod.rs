@@ -95,9 +95,6 @@ pub fn infer(
     let begun = Instant::now();
     let before = posterior.cost();
     let mut inference = backend.explore(posterior, seed, progress)?;
-    if let Some(draws) = &inference.draws {
-        inference.kept = kept(posterior, draws, seed.called("kept"))?;
-    }
     let after = posterior.cost();
     inference.cost = Cost {
         densities: after.densities - before.densities,
@@ -106,6 +103,9 @@ pub fn infer(
         rejections: after.rejections - before.rejections,
         seconds: begun.elapsed().as_secs_f64(),
     };
+    if let Some(draws) = &inference.draws {
+        inference.kept = kept(posterior, draws, seed.called("kept"))?;
+    }
     convergence::check(posterior, &mut inference)?;
     Ok(inference)
 }

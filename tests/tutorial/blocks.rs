@@ -20,7 +20,7 @@ pub(crate) fn steps(page: &str) -> Vec<Step> {
             let of = |line: &str| Step { command: line.into(), shown: None };
             steps.extend(commands.lines().map(of));
         } else if is_new && let Some(last) = steps.last_mut() {
-            last.shown = Some(part);
+            last.shown = (!part.is_empty()).then_some(part);
         }
         is_new = is_commands;
     }
