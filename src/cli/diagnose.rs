@@ -286,16 +286,17 @@ fn draws_of(found: &Diagnosis, labels: &[String]) -> Result<InferenceData> {
 
 /// The corrected model's figures, as those of a calibration are told.
 fn corrected_report(found: &Diagnosis, draws: &Draws) -> CalibrationReport {
-    let mut report = CalibrationReport::default();
-    report.origin = found.origin.clone();
-    report.event = found.event.clone();
-    report.friction = found.baseline.friction.clone();
-    report.noise = found.selected_noise.clone();
-    report.mechanisms = found.corrected.labels.clone();
-    report.backend = LaplaceMixture::default().name().to_owned();
-    report.seed = found.seed;
-    report.parameters = summarise(draws).iter().map(of_summary).collect();
-    report
+    CalibrationReport {
+        origin: found.origin.clone(),
+        event: found.event.clone(),
+        friction: found.baseline.friction.clone(),
+        noise: found.selected_noise.clone(),
+        mechanisms: found.corrected.labels.clone(),
+        backend: LaplaceMixture::default().name().to_owned(),
+        seed: found.seed,
+        parameters: summarise(draws).iter().map(of_summary).collect(),
+        ..CalibrationReport::default()
+    }
 }
 
 /// The events again, with the mechanisms that were found, each in a folder of

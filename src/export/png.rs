@@ -55,10 +55,11 @@ fn options() -> Options<'static> {
         fonts.load_font_data(font.to_vec());
     }
     fonts.set_sans_serif_family(FAMILY);
-    let mut options = Options::default();
-    options.font_family = FAMILY.to_owned();
-    options.fontdb = Arc::new(fonts);
-    options
+    Options {
+        font_family: FAMILY.to_owned(),
+        fontdb: Arc::new(fonts),
+        ..Options::default()
+    }
 }
 
 #[cfg(test)]

@@ -79,7 +79,7 @@ pub fn posterior_checked(
         sets.iter().flatten().filter_map(|set| set.first()).collect();
     let made = pairs.iter().map(|(_, made)| made.as_slice());
     let unit = series.quantity().unit();
-    let figures = statistics::statistics(times, values, unit, made);
+    let figures = statistics::statistics(times, values, unit, &made);
     Ok((bands(&pairs, times)?, figures))
 }
 

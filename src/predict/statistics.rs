@@ -49,7 +49,7 @@ pub(super) fn statistics<'a>(
     times: &[f64],
     values: &[f64],
     unit: &str,
-    replicates: impl Iterator<Item = &'a [f64]> + Clone,
+    replicates: &(impl Iterator<Item = &'a [f64]> + Clone),
 ) -> Vec<Statistic> {
     if values.len() < 2 {
         return Vec::new();
@@ -94,7 +94,7 @@ mod tests {
             &times,
             &[1.0, 5.0, 3.0],
             "m/s",
-            [[1.0, 2.0, 6.0].as_slice(), &[9.0, 5.0, 1.0]].into_iter(),
+            &[[1.0, 2.0, 6.0].as_slice(), &[9.0, 5.0, 1.0]].into_iter(),
         );
         let told: Vec<_> =
             found.iter().map(|s| (s.recorded, &s.replicated[..])).collect();
@@ -110,7 +110,7 @@ mod tests {
         assert_eq!(found[1].unit, "s");
         let p: Vec<f64> = found.iter().map(Statistic::p).collect();
         assert_eq!(p, [1.0, 0.5, 0.75, 0.5, 0.5]);
-        let none = statistics(&[1.0], &[1.0], "m", [].into_iter());
+        let none = statistics(&[1.0], &[1.0], "m", &[].into_iter());
         assert!(none.is_empty());
     }
 }
