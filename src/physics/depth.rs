@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 
 /// By what share a depth that is taken as constant changes at most on its
 /// stretch. The error of the motion is of second order in it: with these
-/// steps speeds are right to some mm/s (`tests/depth.rs`).
+/// steps speeds are right to some mm/s (`tests/physics/depth.rs`).
 const STEP: f64 = 0.02;
 /// The most stretches beside the rows themselves: a depth that goes up and
 /// down without end is taken in larger steps.

@@ -20,7 +20,7 @@ pub const STEPS: f64 = 100.0;
 /// Into how many legs at least a run is cut for a shape that changes steadily
 /// along an axis. The error falls with their square; with these it is below
 /// 0.01 m/s where friction doubles within a fifth of a run (measured in
-/// `tests/changed_motion.rs`), and less where the track's pieces are shorter.
+/// `tests/physics/changed_motion.rs`), and less where the track's pieces are shorter.
 fn stairs(axis: Axis) -> f64 {
     match axis {
         // A slow mass spends long on a short stretch.

@@ -4,8 +4,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-mod terrain;
-
+use crate::terrain::any_track;
 use couloir::Seed;
 use couloir::physics::friction::{Turbulent, VelocityWeakening};
 use couloir::physics::{
@@ -16,7 +15,6 @@ use couloir::scalar::{Grad, Kind, Plain, Real};
 use nalgebra::Vector2;
 use ode_solvers::{Dop853, OutputType, System};
 use rand::RngExt;
-use terrain::any_track;
 
 /// A resistance \[m/s2\] written as a function of the speed \[m/s\].
 #[derive(Clone, Copy)]

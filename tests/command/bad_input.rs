@@ -2,9 +2,6 @@
 
 #![allow(clippy::print_stderr, reason = "a skipped test says so")]
 
-#[path = "bad_input/cases.rs"]
-mod cases;
-
 use std::path::{Path, PathBuf};
 
 use couloir::io::load;
@@ -18,12 +15,12 @@ fn root(name: &str) -> PathBuf {
 fn the_cases_differ_from_an_event_that_loads() {
     let root = root("good-input");
     let files = [
-        ("event.toml", cases::EVENT),
-        ("track.csv", cases::TRACK),
-        ("recording.csv", cases::RECORDING),
+        ("event.toml", crate::cases::EVENT),
+        ("track.csv", crate::cases::TRACK),
+        ("recording.csv", crate::cases::RECORDING),
     ]
     .map(|(name, text)| (name, text.as_bytes().to_vec()));
-    let good = cases::Case {
+    let good = crate::cases::Case {
         name: "good",
         files: files.to_vec(),
         ask: "",
@@ -41,7 +38,7 @@ fn the_cases_differ_from_an_event_that_loads() {
 fn every_malformed_input_is_refused_in_one_line() {
     let root = root("bad-input");
     let mut wrong = Vec::new();
-    let cases = cases::all();
+    let cases = crate::cases::all();
     for case in &cases {
         let path = case.write(&root).unwrap();
         let text = match load(&path, &Laws::default()) {
@@ -72,9 +69,9 @@ fn every_malformed_input_is_refused_in_one_line() {
 fn a_file_that_may_not_be_read_is_refused() {
     use std::fs::{Permissions, read, set_permissions};
     use std::os::unix::fs::PermissionsExt as _;
-    let case = cases::Case {
+    let case = crate::cases::Case {
         name: "locked",
-        files: vec![("event.toml", cases::EVENT.as_bytes().to_vec())],
+        files: vec![("event.toml", crate::cases::EVENT.as_bytes().to_vec())],
         ask: "event.toml",
         expected: &[],
     };

@@ -1,8 +1,5 @@
 //! The command as a user runs it: exit codes, messages, files.
 
-#[path = "bad_input/cases.rs"]
-mod cases;
-
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -43,7 +40,7 @@ const QUICK: [&str; 6] =
 fn every_malformed_input_ends_in_exit_code_2_and_writes_nothing() {
     let root = fresh("bad-input");
     let mut wrong = Vec::new();
-    for case in cases::all() {
+    for case in crate::cases::all() {
         let path = case.write(&root).unwrap();
         let out = fresh("bad-input-out");
         let output = couloir(&[
@@ -114,7 +111,7 @@ fn bad_arguments_end_in_exit_code_2() {
 /// The good event with mechanisms, and with other lines below its priors.
 fn corrected(name: &str, mechanisms: &str, priors: &str) -> PathBuf {
     let list = format!("noise = \"iid\"\nmechanisms = [{mechanisms}]");
-    let event = cases::EVENT.replacen("noise = \"iid\"", &list, 1);
+    let event = crate::cases::EVENT.replacen("noise = \"iid\"", &list, 1);
     with_event(name, &(event + priors + "\n"))
 }
 
@@ -123,8 +120,9 @@ fn with_event(name: &str, event: &str) -> PathBuf {
     let folder = fresh(name);
     std::fs::create_dir_all(&folder).unwrap();
     std::fs::write(folder.join("event.toml"), event).unwrap();
-    std::fs::write(folder.join("track.csv"), cases::TRACK).unwrap();
-    std::fs::write(folder.join("recording.csv"), cases::RECORDING).unwrap();
+    std::fs::write(folder.join("track.csv"), crate::cases::TRACK).unwrap();
+    std::fs::write(folder.join("recording.csv"), crate::cases::RECORDING)
+        .unwrap();
     folder
 }
 
@@ -273,7 +271,7 @@ fn a_diagnosis_writes_an_event_that_runs() {
 
 #[test]
 fn a_prior_of_no_parameter_is_refused_unless_the_law_was_changed() {
-    let event = cases::EVENT.to_owned() + "zeta = \"Gamma(9, 0.03)\"\n";
+    let event = crate::cases::EVENT.to_owned() + "zeta = \"Gamma(9, 0.03)\"\n";
     let folder = with_event("unused-prior", &event);
     let output = couloir(&["calibrate", &folder.to_string_lossy()]);
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));
@@ -712,7 +710,7 @@ fn told_of(folder: &Path) -> (String, Value) {
 
 #[test]
 fn a_depth_that_nobody_gave_is_told_where_the_law_needs_one() {
-    let without = cases::EVENT.replacen("[flow]\ndepth = 1.5\n", "", 1);
+    let without = crate::cases::EVENT.replacen("[flow]\ndepth = 1.5\n", "", 1);
     let told = |name: &str, event: &str| told_of(&with_event(name, event));
     let (words, json) = told("no-depth", &without);
     let note = json["notes"][0].as_str().unwrap();
@@ -720,7 +718,9 @@ fn a_depth_that_nobody_gave_is_told_where_the_law_needs_one() {
     assert!(note.contains("xi stands for the product xi h"), "{note}");
     assert!(words.contains(note), "{words}");
     let dry = without.replacen("voellmy", "coulomb", 1);
-    for (name, event) in [("dry", dry.as_str()), ("depth", cases::EVENT)] {
+    for (name, event) in
+        [("dry", dry.as_str()), ("depth", crate::cases::EVENT)]
+    {
         let (_, json) = told(name, event);
         assert_eq!(json["notes"].as_array().unwrap().len(), 0, "{json}");
     }
@@ -728,7 +728,7 @@ fn a_depth_that_nobody_gave_is_told_where_the_law_needs_one() {
 
 /// The good event with another recording.
 fn with_recording(name: &str, recording: &str) -> PathBuf {
-    let folder = with_event(name, cases::EVENT);
+    let folder = with_event(name, crate::cases::EVENT);
     std::fs::write(folder.join("recording.csv"), recording).unwrap();
     folder
 }
@@ -739,7 +739,7 @@ fn columns_that_nobody_asked_for_are_passed_over() {
     let (_, json) = told_of(&with_recording("columns", rows));
     let note = json["notes"][0].as_str().unwrap();
     assert!(note.ends_with("recording.csv: \"hdop\", \"note\"."), "{note}");
-    let (_, plain) = told_of(&with_event("plain", cases::EVENT));
+    let (_, plain) = told_of(&with_event("plain", crate::cases::EVENT));
     assert_eq!(json["velocity"], plain["velocity"]);
 }
 
@@ -771,7 +771,7 @@ fn what_could_be_true_is_warned_of() {
             words.contains(&format!("Warning: {}", all[0].as_str().unwrap()))
         );
     }
-    let (_, json) = told_of(&with_event("undoubted", cases::EVENT));
+    let (_, json) = told_of(&with_event("undoubted", crate::cases::EVENT));
     assert_eq!(json["warnings"].as_array().unwrap().len(), 0, "{json}");
 }
 

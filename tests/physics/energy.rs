@@ -3,8 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-mod terrain;
-
+use crate::terrain::any_track;
 use couloir::Seed;
 use couloir::physics::friction::{
     Cohesion, Coulomb, LAWS, LawSum, Pcm, Turbulent, Voellmy,
@@ -18,7 +17,6 @@ use couloir::prior::AnyPrior;
 use couloir::scalar::{Plain, Real};
 use couloir::seed::Rng;
 use rand::RngExt;
-use terrain::any_track;
 
 fn n(value: f64) -> Real {
     Real::new(value)
@@ -172,7 +170,7 @@ fn where_friction_holds_a_mass_at_rest_never_starts() {
 fn coulomb_turns_height_into_speed() {
     // v^2 = v0^2 + 2 g (drop - mu run): mu acts on the horizontal way.
     let mut rng = Seed::new(24).rng();
-    let track = terrain::random_track(&mut rng, 40, 20.0, (20.0, 40.0));
+    let track = crate::terrain::random_track(&mut rng, 40, 20.0, (20.0, 40.0));
     let law = Coulomb { mu: n(0.25) };
     let times: Vec<f64> = (0..200).map(|i| 0.1 * f64::from(i)).collect();
     let (x0, z0) = track.position(5.0);

@@ -19,10 +19,10 @@ use couloir::prelude::*;
 use couloir::prior::AnyPrior;
 
 /// A file with the text as printed.
-const PRINTED: &str = include_str!("data/corrected/model.rs");
+const PRINTED: &str = include_str!("../data/corrected/model.rs");
 
 mod printed {
-    include!("data/corrected/model.rs");
+    include!("../data/corrected/model.rs");
 
     pub(crate) fn of(event: couloir::Event) -> Result<Option<Evidence>> {
         evidence(event)

@@ -2,7 +2,7 @@
 //! model can explain in two places.
 //!
 //! `docs/evidence.md` holds the table that the slow test here prints:
-//! `cargo test --release --test evidence -- --ignored --nocapture`.
+//! `cargo test --release --test inference evidence -- --ignored --nocapture`.
 
 #![allow(clippy::print_stdout, reason = "the table is what it is run for")]
 

@@ -3,8 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-mod terrain;
-
+use crate::terrain::any_track;
 use couloir::Seed;
 use couloir::physics::friction::{
     Coulomb, Curvature, LAWS, LawSum, Laws, Voellmy,
@@ -16,7 +15,6 @@ use couloir::prior::AnyPrior;
 use couloir::scalar::{Grad, Kind, Plain, Real};
 use couloir::seed::Rng;
 use rand::RngExt;
-use terrain::any_track;
 
 type Dual = Grad<8>;
 

@@ -3,8 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-mod terrain;
-
+use crate::terrain::{any_track, random_track};
 use couloir::Seed;
 use couloir::physics::friction::{
     Cohesion, Coulomb, Curvature, Entrainment, Pcm, Viscous,
@@ -19,7 +18,6 @@ use couloir::seed::Rng;
 use nalgebra::Vector2;
 use ode_solvers::{Dop853, OutputType, System};
 use rand::RngExt;
-use terrain::{any_track, random_track};
 
 /// The coefficients of r = mu max(0, load + p kappa u^2) + k0 + k1 u + k2 u^2.
 #[derive(Debug, Clone, Copy)]
