@@ -75,7 +75,7 @@
 //! | [`elpd`], [`io`], [`report`] | prediction of what was left out; event files in; tables, pictures and pages out |
 //! | [`calibrate`], [`diagnosis`], [`mod@import`] | a whole calibration; what a model lacks; events from logs |
 //! | [`averaged`], [`sbc`] | a calibration averaged over noises, and beside a force of free form; whether inference can be trusted |
-//! | [`mod@reproduce`], [`challenge`] | the paper's study, computed again; hidden effects, made without the engine, and the score |
+//! | [`mod@reproduce`], [`challenge`], [`sweep`] | the paper's study, computed again; hidden effects, made without the engine, and the score; thousands of events |
 //! | [`cli`] | the command: nothing below it prints |
 //!
 //! # Features
@@ -132,6 +132,8 @@ pub mod sbc;
 pub mod scalar;
 pub mod seed;
 pub(crate) mod spelling;
+#[cfg(feature = "cli")]
+pub mod sweep;
 
 /// Writes a model: its data, its unknowns, and how the data come about.
 ///

@@ -20,7 +20,7 @@ impl Strict {
     /// A result with what stands against using it.
     pub(super) fn answer(&self, text: String, doubts: &[String]) -> Answer {
         let refused = doubts.first().filter(|_| self.strict).cloned();
-        Answer { text, refused, failed: None }
+        Answer { refused, ..Answer::from(text) }
     }
 }
 
@@ -30,6 +30,8 @@ pub(super) struct Answer {
     pub(super) text: String,
     /// Why it should not be used, where that was to be told by the exit code.
     pub(super) refused: Option<String>,
+    /// Whether some of what was asked for failed, which the text tells.
+    pub(super) incomplete: bool,
     /// Why it could not be written, too.
     pub(super) failed: Option<Error>,
 }
@@ -43,7 +45,7 @@ impl Answer {
 
 impl From<String> for Answer {
     fn from(text: String) -> Self {
-        Self { text, refused: None, failed: None }
+        Self { text, refused: None, incomplete: false, failed: None }
     }
 }
 

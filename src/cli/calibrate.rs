@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use serde_json::Value;
 
 use super::answer::{Answer, Strict, pretty, wrapped};
 use super::figures::{FOLDER, Figures};
@@ -17,7 +18,7 @@ use crate::averaged::{Open, calibrate_open};
 use crate::calibrate::Calibration;
 use crate::error::Result;
 use crate::export::{InferenceData, Scope, gather, of_draws};
-use crate::infer::{Progress, Suited, suited};
+use crate::infer::{Progress, Quiet, Suited, suited};
 use crate::model::{Assembled, Posterior};
 use crate::physics::friction::Laws;
 use crate::report::{
@@ -117,6 +118,12 @@ impl Arguments {
         Ok(Made { files, data: gathered(&found, &model) })
     }
 
+    /// `calibration.json` alone.
+    pub(super) fn document(&self, laws: &Laws) -> Result<Value> {
+        let Found { found, .. } = self.found(laws, &Quiet, "")?;
+        Ok(self.value(&found, None))
+    }
+
     /// The event's calibration, with where it comes from.
     fn found(
         &self,
@@ -144,12 +151,20 @@ impl Arguments {
         found: &Calibration,
         data: Option<&InferenceData>,
     ) -> String {
+        pretty(&self.value(found, data))
+    }
+
+    fn value(
+        &self,
+        found: &Calibration,
+        data: Option<&InferenceData>,
+    ) -> Value {
         let mut json = calibration_json(&found.report);
         json["quick"] = self.quick.into();
         if let Some(left_out) = data.and_then(|d| d.left_out.as_ref()) {
             json["loo"] = left_out.json();
         }
-        pretty(&json)
+        json
     }
 
     fn files(

@@ -2,7 +2,7 @@
 //! they predict.
 
 use clap::Args;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::answer::{Answer, pretty, wrapped};
 use super::predictive::{self, Predicted};
@@ -14,7 +14,7 @@ use super::{Subject, Work, at_least_one, backend_giving, width};
 use crate::draws::{Lfo, Loo};
 use crate::elpd;
 use crate::error::{Error, Result};
-use crate::infer::{Backend, Evidence, Inference, infer};
+use crate::infer::{Backend, Evidence, Inference, Progress, infer};
 use crate::model::{Assembled, Posterior};
 use crate::physics::friction::Laws;
 use crate::seed::Seed;
@@ -109,28 +109,11 @@ fn ahead(compared: &[Compared]) -> Vec<Predicted<'_>> {
 
 impl Arguments {
     pub(super) fn run(&self, laws: &Laws, told: &Told) -> Result<Answer> {
-        if self.models.len() < 2 {
-            return Err(Error::input(
-                "a comparison needs two models or more: give --model \
-                 \"voellmy, iid\" --model \"voellmy, ar(1)\"",
-            ));
-        }
         let files = ["comparison.json"];
         let results = self.output.ready(&files, self.subject.paths())?;
-        let file = self.subject.load(laws)?;
-        let event = file.event.name().to_owned();
-        let mut said = Said::of(&file);
-        let compared = self
-            .models
-            .iter()
-            .map(|text| self.compared(text, laws, told))
-            .collect::<Result<Vec<_>>>()?;
+        let (event, compared, said) = self.found(laws, told)?;
         told.finish();
-        let depth = NoDepth::of(&file);
-        for c in &compared {
-            said.note(depth.note(&c.friction, laws));
-        }
-        let mut document = self.document(&event, &compared);
+        let mut document = self.json(&event, &compared);
         said.write_to(&mut document);
         let document = pretty(&document);
         let wrote =
@@ -142,19 +125,58 @@ impl Arguments {
         Ok(Answer::from(text).after(wrote))
     }
 
+    /// `comparison.json` alone.
+    pub(super) fn document(
+        &self,
+        laws: &Laws,
+        progress: &dyn Progress,
+    ) -> Result<Value> {
+        let (event, compared, said) = self.found(laws, progress)?;
+        let mut document = self.json(&event, &compared);
+        said.write_to(&mut document);
+        Ok(document)
+    }
+
+    /// The event's name, its models compared, and what is said of it.
+    fn found(
+        &self,
+        laws: &Laws,
+        progress: &dyn Progress,
+    ) -> Result<(String, Vec<Compared>, Said)> {
+        if self.models.len() < 2 {
+            return Err(Error::input(
+                "a comparison needs two models or more: give --model \
+                 \"voellmy, iid\" --model \"voellmy, ar(1)\"",
+            ));
+        }
+        let file = self.subject.load(laws)?;
+        let event = file.event.name().to_owned();
+        let mut said = Said::of(&file);
+        let compared = self
+            .models
+            .iter()
+            .map(|text| self.compared(text, laws, progress))
+            .collect::<Result<Vec<_>>>()?;
+        let depth = NoDepth::of(&file);
+        for c in &compared {
+            said.note(depth.note(&c.friction, laws));
+        }
+        Ok((event, compared, said))
+    }
+
     fn compared(
         &self,
         text: &str,
         laws: &Laws,
-        told: &Told,
+        progress: &dyn Progress,
     ) -> Result<Compared> {
         let model = self.model(text, laws)?;
         let posterior = Posterior::new(&model)?;
         let backend = self.work.backend(&self.backend)?;
         let seed = Seed::new(self.work.seed);
-        let found = infer(backend.as_ref(), &posterior, seed, told)?;
+        let found = infer(backend.as_ref(), &posterior, seed, progress)?;
         let (evidence, loo) = self.judged(&found, &posterior)?;
-        let lfo = self.predicted_ahead(&model, backend.as_ref(), told)?;
+        let lfo = self.predicted_ahead(&model, backend.as_ref(), progress)?;
         Ok(Compared {
             friction: model.friction(),
             noise: model.noise(),
@@ -209,7 +231,7 @@ impl Arguments {
         &self,
         model: &Assembled,
         backend: &dyn Backend,
-        told: &Told,
+        progress: &dyn Progress,
     ) -> Result<Option<Lfo>> {
         if !self.lfo {
             return Ok(None);
@@ -217,16 +239,12 @@ impl Arguments {
         let values = model.event().recordings().map(|s| s.len()).sum();
         let least = self.lfo_from.unwrap_or_else(|| elpd::least_for(values));
         let seed = Seed::new(self.work.seed).child(1);
-        elpd::leave_future_out(model, backend, least, seed, told)
+        elpd::leave_future_out(model, backend, least, seed, progress)
             .map(Some)
             .map_err(|error| error.within("--lfo"))
     }
 
-    fn document(
-        &self,
-        event: &str,
-        compared: &[Compared],
-    ) -> serde_json::Value {
+    fn json(&self, event: &str, compared: &[Compared]) -> serde_json::Value {
         let mut models: Vec<_> =
             compared.iter().map(|c| c.document(&compared[0])).collect();
         let (loo, lfo) = (left_out(compared), ahead(compared));

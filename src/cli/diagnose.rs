@@ -25,7 +25,7 @@ use crate::diagnosis::{
 use crate::draws::{Draws, summarise};
 use crate::error::{Error, Result};
 use crate::export::{InferenceData, of_draws};
-use crate::infer::{Backend, LaplaceMixture, Progress};
+use crate::infer::{Backend, LaplaceMixture, Progress, Quiet};
 use crate::model::Assembled;
 use crate::physics::friction::Laws;
 use crate::report::{CalibrationReport, Origin};
@@ -157,6 +157,12 @@ impl Arguments {
         )?;
         files.extend(corrected(&subjects, &labels, &found, laws)?);
         Ok(Made { files, data })
+    }
+
+    /// `diagnosis.json` alone.
+    pub(super) fn document(&self, laws: &Laws) -> Result<Value> {
+        let subjects = self.subjects(&self.thin.quickly(self.quick));
+        Ok(self.found(&subjects, laws, &Quiet)?.found.json())
     }
 
     fn reports(

@@ -23,6 +23,13 @@ Examples:
   couloir diagnose my-event --quick
   couloir diagnose sensor-1 sensor-2 --one-law --out results";
 
+pub(super) const SWEEP: &str = "\
+Examples:
+  couloir sweep survey --out results
+  couloir sweep \"survey/2026-*\" --out results -- --quick
+  couloir sweep list.csv --verb calibrate --out results -- --noise=infer
+  couloir sweep survey --out results --retry";
+
 pub(super) const SIMULATE: &str = "\
 Examples:
   couloir simulate my-event --set mu=0.3 --set xi=1200

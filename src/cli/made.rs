@@ -5,12 +5,13 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use clap::error::ErrorKind;
+use serde_json::Value;
 
 use super::answer::typed;
-use super::{Command, parsed};
+use super::{Command, parsed, parsed_last};
 use crate::error::{Error, Result};
 use crate::export::InferenceData;
-use crate::infer::Progress;
+use crate::infer::{Progress, Quiet};
 use crate::io::{prepare_run, write_run};
 use crate::physics::friction::Laws;
 
@@ -77,6 +78,21 @@ pub fn made(
         _ => Err(Error::input(format!(
             "{typed}: expected calibrate, diagnose, simulate or import; run \
              the others as commands"
+        ))),
+    }
+}
+
+/// The JSON document of a command that looks at one event. Of an option that
+/// is given twice, the last holds.
+pub(super) fn document(laws: &Laws, words: &[OsString]) -> Result<Value> {
+    let cli = parsed_last(laws, words).map_err(|e| refused(&e))?;
+    match &cli.command {
+        Command::Calibrate(of) => of.document(laws),
+        Command::Compare(of) => of.document(laws, &Quiet),
+        Command::Diagnose(of) => of.document(laws),
+        _ => Err(Error::input(format!(
+            "{}: expected calibrate, compare or diagnose",
+            typed(words)
         ))),
     }
 }

@@ -27,6 +27,7 @@ mod said;
 mod screen;
 mod simulate;
 mod study;
+mod sweep;
 mod thin;
 
 use std::ffi::OsString;
@@ -86,6 +87,10 @@ enum Command {
     /// Run every backend on an event, side by side
     #[command(after_help = examples::BENCH)]
     Bench(bench::Arguments),
+    /// Diagnose, calibrate or compare each of many events, and go on after a
+    /// stop
+    #[command(after_help = examples::SWEEP)]
+    Sweep(sweep::Arguments),
     /// Diagnose events that hide one effect each, and score the answers
     #[command(after_help = examples::CHALLENGE)]
     Challenge(challenge::Arguments),
@@ -267,6 +272,19 @@ fn parsed(
     Cli::from_arg_matches(&matches)
 }
 
+/// The same, where the last of an option that is given twice holds.
+fn parsed_last(
+    laws: &Laws,
+    words: &[OsString],
+) -> std::result::Result<Cli, clap::Error> {
+    let name = OsString::from("couloir");
+    let words = std::iter::once(&name).chain(words);
+    let command = command_of(laws)
+        .mut_subcommands(|subcommand| subcommand.args_override_self(true));
+    let matches = command.try_get_matches_from(words)?;
+    Cli::from_arg_matches(&matches)
+}
+
 /// Tells an error, with the manual's page that helps; the exit code says
 /// whether the input is to be mended.
 fn refuse(error: &Error) -> u8 {
@@ -281,6 +299,7 @@ impl Command {
             Self::Calibrate(arguments) => arguments.run(laws, told, typed),
             Self::Compare(arguments) => arguments.run(laws, told),
             Self::Diagnose(arguments) => arguments.run(laws, told, typed),
+            Self::Sweep(arguments) => arguments.run(laws, told),
             Self::Challenge(arguments) => arguments.run(told),
             Self::Simulate(arguments) => arguments.run(laws),
             Self::New(arguments) => arguments.run().map(Answer::from),
@@ -293,6 +312,9 @@ impl Command {
         }
     }
 }
+
+/// The exit code of a sweep in which events failed.
+const EVENTS_FAILED: u8 = 3;
 
 /// The exit code of a result that should not be used.
 const NOT_TO_BE_USED: u8 = 4;
@@ -309,6 +331,7 @@ fn end(answer: &Answer) -> u8 {
     let failed = failed.fold(None, |_, error| Some(refuse(error)));
     failed.unwrap_or(match answer.refused {
         Some(_) => NOT_TO_BE_USED,
+        None if answer.incomplete => EVENTS_FAILED,
         None => 0,
     })
 }

@@ -69,7 +69,7 @@ fn plural(count: usize, what: &str) -> String {
 }
 
 /// A time in the unit that people would say it in.
-fn duration(seconds: f64) -> String {
+pub(super) fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 90.0 => format!("{s:.0} s"),
         s if s < 5400.0 => format!("{:.0} min", s / 60.0),

@@ -54,7 +54,7 @@ fn named(text: &str, file: &Path) -> Result<Vec<String>> {
 }
 
 /// The SHA-256 of what is in a file, in hexadecimal digits.
-pub(super) fn sha256(bytes: &[u8]) -> String {
+pub(crate) fn sha256(bytes: &[u8]) -> String {
     let digest = Sha256::digest(bytes);
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }

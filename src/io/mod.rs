@@ -30,10 +30,12 @@ pub use event_file::{EventFile, load, parse_event};
 #[cfg(feature = "import")]
 pub(crate) use foreign::{read_any_text, read_bytes};
 #[cfg(feature = "cli")]
-pub(crate) use inputs::inputs;
+pub(crate) use inputs::{inputs, sha256};
 #[cfg(feature = "cli")]
 pub(crate) use run_folder::{prepare_run, write_run};
 pub use template::new_event;
 #[cfg(feature = "import")]
-pub(crate) use words::{either, place, quoted};
+pub(crate) use words::either;
+#[cfg(any(feature = "cli", feature = "import"))]
+pub(crate) use words::{place, quoted};
 pub use write::write_all;

@@ -1,0 +1,259 @@
+//! `couloir sweep`: one command for many events, each of them once.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use clap::{Args, ValueEnum};
+use serde_json::Value;
+
+use super::answer::Answer;
+use super::at_least_one;
+use super::made::document;
+use super::pace::duration;
+use super::progress::Told;
+use super::results::{Results, folder};
+use crate::error::{Error, Result};
+use crate::infer::Progress as _;
+use crate::physics::friction::Laws;
+use crate::sweep::{
+    Index, Listed, Outcome, Plan, Ran, Row, Shard, Summary, Task, cores,
+    listed, run,
+};
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The events: a folder that holds event folders, a pattern in quotes
+    /// such as "survey/*", or a CSV file with a column event, whose other
+    /// columns are options of that name for each
+    list: PathBuf,
+    /// Folder of the results; the same again goes on where a run was stopped
+    #[arg(long, value_name = "DIR", value_parser = folder)]
+    out: PathBuf,
+    /// What to do with each event
+    #[arg(long, value_enum, default_value = "diagnose")]
+    verb: Verb,
+    /// How many events at a time; as many as there are processors where not
+    /// given
+    #[arg(long, value_name = "N", value_parser = at_least_one)]
+    jobs: Option<usize>,
+    /// Try again what failed
+    #[arg(long)]
+    retry: bool,
+    /// Do part I of N of the list alone, for a scheduler's array of jobs; run
+    /// once more without it for the summary
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
+    /// Print sweep.json instead of the table
+    #[arg(long)]
+    json: bool,
+    /// Options of the command that is run for each event, such as --quick
+    #[arg(last = true, value_name = "OPTIONS")]
+    options: Vec<OsString>,
+}
+
+/// A command that is run for each event.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Verb {
+    Diagnose,
+    Calibrate,
+    Compare,
+}
+
+impl Verb {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Diagnose => "diagnose",
+            Self::Calibrate => "calibrate",
+            Self::Compare => "compare",
+        }
+    }
+}
+
+/// Options that say where results go, which a sweep says itself.
+const REFUSED: [&str; 5] =
+    ["--out", "--json", "--strict", "--format", "--figures"];
+
+/// What the summary writes.
+const FILES: [&str; 2] = ["sweep.json", "sweep.csv"];
+
+/// Members of a result that are of its run, or as long as all others: they
+/// are had again by the command itself.
+const DROPPED: [&str; 10] = [
+    "command",
+    "corrected",
+    "forces",
+    "inputs",
+    "program",
+    "rest",
+    "seconds",
+    "separating",
+    "words",
+    "backend_why",
+];
+
+/// What is kept of each mechanism.
+const KEPT: [&str; 4] = ["name", "kind", "log10_bayes_factor", "probability"];
+
+/// How often a run without a bar says how far it is.
+const EVERY: Duration = Duration::from_secs(30);
+
+/// A listed event with its task, or why it has none.
+type Planned = (Listed, std::result::Result<Task, String>);
+
+impl Arguments {
+    pub(super) fn run(&self, laws: &Laws, told: &Told) -> Result<Answer> {
+        self.refuse_options()?;
+        let results = Results::ready(Some(&self.out), &FILES, &[])?;
+        let list = listed(&self.list)?;
+        let shard = self.shard.unwrap_or(Shard::ALL);
+        let planned = self.planned(&list, shard);
+        let tasks: Vec<Task> =
+            planned.iter().filter_map(|(_, t)| t.clone().ok()).collect();
+        let plan = Plan {
+            folder: &self.out,
+            jobs: self.jobs.map_or_else(cores, Ok)?,
+            retry: self.retry,
+            shard,
+            list: &list,
+        };
+        let work = |task: &Task| document(laws, &task.words).map(shortened);
+        let begun = Instant::now();
+        told.begin("Events", Some(tasks.len() as u64));
+        let mut teller = Teller { told, begun, said: begun, advanced: 0 };
+        let ran = run(&tasks, &plan, &work, &mut |ran| teller.hear(ran))?;
+        told.finish();
+        if self.shard.is_some() {
+            return Ok(of_shard(shard, &ran, &planned));
+        }
+        let summary = summed(&self.out, self.verb, &planned)?;
+        let json = summary.json();
+        let wrote = results.write(|| {
+            let texts = [json.clone(), summary.csv()];
+            Ok(FILES.into_iter().zip(texts).collect())
+        });
+        let text = match self.json {
+            true => json,
+            false => {
+                summary.table() + &results.told(&wrote, &FILES, super::width())
+            }
+        };
+        Ok(with_failures(text, summary.failed()).after(wrote))
+    }
+
+    fn refuse_options(&self) -> Result<()> {
+        for option in &self.options {
+            let text = option.to_string_lossy();
+            let name = text.split('=').next().unwrap_or_default();
+            if REFUSED.contains(&name) {
+                return Err(Error::input(format!(
+                    "{name} behind --: a sweep says itself where results go; \
+                     leave it away"
+                )));
+            }
+            if !text.starts_with('-') && self.is_alone(option) {
+                return Err(Error::input(format!(
+                    "{text:?} behind --: expected options of {}, with = \
+                     before a value, such as --friction=coulomb",
+                    self.verb.name()
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a word has no option before it that it could be the value of.
+    fn is_alone(&self, word: &OsString) -> bool {
+        let before = self.options.iter().take_while(|other| *other != word);
+        let before = before.last().map(|word| word.to_string_lossy());
+        before.is_none_or(|text| !text.starts_with('-') || text.contains('='))
+    }
+
+    /// The events of a shard, each with its task.
+    fn planned(&self, list: &[Listed], shard: Shard) -> Vec<Planned> {
+        let taken = list.iter().enumerate().filter(|(at, _)| shard.takes(*at));
+        let task = |(_, listed): (usize, &Listed)| {
+            let task = Task::new(self.verb.name(), &self.options, listed);
+            (listed.clone(), task.map_err(|error| error.to_string()))
+        };
+        taken.map(task).collect()
+    }
+}
+
+/// What came of all events, of the journals.
+fn summed(out: &Path, verb: Verb, planned: &[Planned]) -> Result<Summary> {
+    let index = Index::of(out)?;
+    let mut summary = Summary::new(verb.name());
+    for (listed, task) in planned {
+        let outcome = match task {
+            Ok(task) => index.outcome(&task.key)?,
+            Err(why) => Some(Outcome::Failed(why.clone())),
+        };
+        summary.add(&Row { event: listed.name(), outcome });
+    }
+    Ok(summary)
+}
+
+fn of_shard(shard: Shard, ran: &Ran, planned: &[Planned]) -> Answer {
+    let unread = planned.iter().filter(|(_, task)| task.is_err()).count();
+    let failed = ran.failed + unread;
+    let text = format!(
+        "Shard {shard}: {} events, {} done before, {} done now, {failed} \
+         failed\n",
+        planned.len(),
+        ran.before,
+        ran.done
+    );
+    with_failures(text, failed)
+}
+
+/// An answer whose exit code tells that events failed.
+fn with_failures(text: String, failed: usize) -> Answer {
+    let mut answer = Answer::from(text);
+    answer.incomplete = failed > 0;
+    answer
+}
+
+/// The part of a result that a sweep keeps.
+fn shortened(mut result: Value) -> Value {
+    if let Some(members) = result.as_object_mut() {
+        members.retain(|name, _| !DROPPED.contains(&name.as_str()));
+    }
+    let mechanisms =
+        result.get_mut("mechanisms").and_then(Value::as_array_mut);
+    for mechanism in mechanisms.into_iter().flatten() {
+        if let Some(members) = mechanism.as_object_mut() {
+            members.retain(|name, _| KEPT.contains(&name.as_str()));
+        }
+    }
+    result
+}
+
+/// Tells how far a sweep is.
+struct Teller<'t> {
+    told: &'t Told,
+    begun: Instant,
+    said: Instant,
+    advanced: usize,
+}
+
+impl Teller<'_> {
+    fn hear(&mut self, ran: &Ran) {
+        let now = ran.done + ran.failed;
+        let all = ran.before + now;
+        self.told.advance((all - self.advanced.min(all)) as u64);
+        self.advanced = all;
+        if self.told.is_bar() || now == 0 || self.said.elapsed() < EVERY {
+            return;
+        }
+        self.said = Instant::now();
+        let each = self.begun.elapsed().as_secs_f64() / now as f64;
+        let left = each * ran.to_do.saturating_sub(now) as f64;
+        self.told.say(&format!(
+            "{now} of {} events, {} failed: about {} more",
+            ran.to_do,
+            ran.failed,
+            duration(left)
+        ));
+    }
+}
