@@ -129,7 +129,7 @@ impl Summary {
             "failures": self.failures_json(),
         });
         let head = format!("{head:#}");
-        let head = head.trim_end_matches(['\n', '}']);
+        let head = head.strip_suffix('}').unwrap_or(&head).trim_end();
         format!("{head},\n  \"rows\": [\n{}\n  ]\n}}\n", self.json)
     }
 
@@ -299,6 +299,14 @@ mod tests {
         assert_eq!(document["mechanisms"][0]["name"], "surge");
         assert_eq!(document["mechanisms"][0]["mean_probability"], 0.75);
         assert_eq!(document["failures"][0]["events"], json!(["=1+1"]));
+    }
+
+    #[test]
+    fn the_json_of_nothing_is_whole() {
+        let mut empty = Summary::new("calibrate");
+        empty.add(&Row { event: "a".to_owned(), outcome: None });
+        let document: Value = serde_json::from_str(&empty.json()).unwrap();
+        assert_eq!(document["missing"], 1);
     }
 
     #[test]

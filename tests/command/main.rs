@@ -6,4 +6,5 @@ mod export;
 mod habits;
 #[cfg(feature = "import")]
 mod import;
+mod sweep;
 mod words;
