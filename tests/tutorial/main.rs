@@ -16,7 +16,7 @@ use blocks::{Step, steps, words};
 use printed::difference;
 
 /// The chapters in the order in which a reader takes them.
-const CHAPTERS: [&str; 11] = [
+const CHAPTERS: [&str; 12] = [
     "README.md",
     "manual/src/install.md",
     "manual/src/event.md",
@@ -26,6 +26,7 @@ const CHAPTERS: [&str; 11] = [
     "manual/src/silence.md",
     "manual/src/noise.md",
     "manual/src/together.md",
+    "manual/src/many.md",
     "manual/src/messages.md",
     "manual/src/python.md",
 ];
