@@ -548,7 +548,7 @@ impl Writer<'_> {
                 Piece::Increment(word, value) => {
                     let run = at(word.span(), "run");
                     let at = Span::mixed_site().located_at(word.span());
-                    quote_spanned!(at=> #run.add(#value)?)
+                    quote_spanned!(at=> #run.increment(#value)?)
                 }
                 Piece::Observation(line) => self.observation(line),
                 Piece::Broken(_) => TokenStream::new(),

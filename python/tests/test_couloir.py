@@ -199,5 +199,50 @@ class Shown(unittest.TestCase):
         self.assertAlmostEqual(rhat, found.parameters["mu"].rhat, delta=5e-4)
 
 
+class Many(unittest.TestCase):
+    """A sweep in shards on Dask is the command's own, byte for byte."""
+
+    def events(self, root):
+        for number in range(3):
+            event = root / f"event {number}"
+            event.mkdir()
+            for file in EVENT.iterdir():
+                (event / file.name).write_bytes(file.read_bytes())
+        return sorted(root.glob("event *"))
+
+    def test_dask(self):
+        try:
+            from dask.distributed import Client, LocalCluster
+        except ImportError:
+            self.skipTest("there is no Dask")
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            events, options = self.events(root), {"quick": True, "draws": 100}
+            here = couloir.sweep(
+                events, root / "here", verb="calibrate", **options
+            )
+            self.assertEqual((here.events, here.failed), (3, 0))
+            with LocalCluster(
+                n_workers=2, threads_per_worker=1, dashboard_address=None
+            ) as cluster, Client(cluster) as client:
+                there = couloir.sweep(
+                    events, root / "there", verb="calibrate", client=client,
+                    shards=2, **options
+                )
+            self.assertEqual(here.document, there.document)
+            self.assertEqual(
+                *(
+                    (x.folder / "sweep.json").read_bytes()
+                    for x in (here, there)
+                )
+            )
+
+    def test_what_is_wrong_is_an_error_of_input(self):
+        with tempfile.TemporaryDirectory() as out:
+            for events in ("missing", [], b"x"):
+                with self.assertRaises(couloir.InputError):
+                    couloir.sweep(events, out)
+
+
 if __name__ == "__main__":
     unittest.main()

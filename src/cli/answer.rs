@@ -59,7 +59,7 @@ pub(super) fn typed(words: &[OsString]) -> String {
 }
 
 /// A word of a command as a shell would take it.
-fn quoted_word(word: &str) -> String {
+pub(super) fn quoted_word(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "-_=./,:+@%".contains(c);
     match !word.is_empty() && word.chars().all(is_plain) {
         true => word.to_owned(),

@@ -10,6 +10,7 @@ mod challenge;
 mod compare;
 mod completions;
 mod diagnose;
+mod engine;
 mod examples;
 mod figures;
 mod format;

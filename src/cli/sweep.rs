@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use super::answer::Answer;
 use super::at_least_one;
+use super::engine::Engine;
 use super::made::document;
 use super::pace::duration;
 use super::progress::Told;
@@ -44,6 +45,15 @@ pub(super) struct Arguments {
     /// once more without it for the summary
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
+    /// Hand the list to a scheduler instead, in shards: writes the script of
+    /// an array of jobs to DIR/engine/sweep.sh, and submits it
+    #[arg(long, value_enum, conflicts_with_all = ["shard", "json"])]
+    engine: Option<Engine>,
+    /// How many shards the scheduler gets; one for each 100 events where not
+    /// given
+    #[arg(long, value_name = "N", requires = "engine",
+          value_parser = at_least_one)]
+    shards: Option<usize>,
     /// Print sweep.json instead of the table
     #[arg(long)]
     json: bool,
@@ -73,6 +83,10 @@ impl Verb {
 /// Options that say where results go, which a sweep says itself.
 const REFUSED: [&str; 5] =
     ["--out", "--json", "--strict", "--format", "--figures"];
+
+/// How many events a shard has, where nobody says: a task of a scheduler costs
+/// about as much as part of an event, and is to be spent on many.
+const SHARD: usize = 100;
 
 /// What the summary writes.
 const FILES: [&str; 2] = ["sweep.json", "sweep.csv"];
@@ -106,6 +120,11 @@ impl Arguments {
         self.refuse_options()?;
         let results = Results::ready(Some(&self.out), &FILES, &[])?;
         let list = listed(&self.list)?;
+        if let Some(engine) = self.engine {
+            let shards = self.shards.unwrap_or(list.len().div_ceil(SHARD));
+            let words = self.words_of_a_shard()?;
+            return engine.submit(&self.out, &words, shards).map(Answer::from);
+        }
         let shard = self.shard.unwrap_or(Shard::ALL);
         let planned = self.planned(&list, shard);
         let tasks: Vec<Task> =
@@ -127,18 +146,34 @@ impl Arguments {
             return Ok(of_shard(shard, &ran, &planned));
         }
         let summary = summed(&self.out, self.verb, &planned)?;
-        let json = summary.json();
-        let wrote = results.write(|| {
-            let texts = [json.clone(), summary.csv()];
-            Ok(FILES.into_iter().zip(texts).collect())
-        });
-        let text = match self.json {
-            true => json,
-            false => {
-                summary.table() + &results.told(&wrote, &FILES, super::width())
-            }
+        let (failed, table) = (summary.failed(), summary.table());
+        let texts = summary.into_files();
+        let wrote = results
+            .write(|| Ok(FILES.into_iter().zip(texts.iter()).collect()));
+        let told = results.told(&wrote, &FILES, super::width());
+        let [json, _] = texts;
+        let text = if self.json { json } else { table + &told };
+        Ok(with_failures(text, failed).after(wrote))
+    }
+
+    /// The words of a shard's command, but for which shard it is: those before
+    /// it, and those behind.
+    fn words_of_a_shard(&self) -> Result<[Vec<OsString>; 2]> {
+        let absolute = |path: &Path| {
+            std::path::absolute(path).map(PathBuf::into_os_string).map_err(
+                |error| Error::system(format!("{}: {error}", path.display())),
+            )
         };
-        Ok(with_failures(text, summary.failed()).after(wrote))
+        let verb = format!("--verb={}", self.verb.name()).into();
+        let mut before = vec!["sweep".into(), "--quiet".into(), verb];
+        before.extend(["--out".into(), absolute(&self.out)?]);
+        if let Some(jobs) = self.jobs {
+            before.push(format!("--jobs={jobs}").into());
+        }
+        before.extend(self.retry.then(|| "--retry".into()));
+        let mut behind = vec![absolute(&self.list)?, "--".into()];
+        behind.extend(self.options.iter().cloned());
+        Ok([before, behind])
     }
 
     fn refuse_options(&self) -> Result<()> {

@@ -95,7 +95,7 @@ impl<K: Kind> Run<'_, K> {
     /// # Errors
     /// [`Stop::Reject`](crate::error::Stop::Reject) where it is minus
     /// infinity.
-    pub fn add(&mut self, log_density: impl Into<Real<K>>) -> Outcome {
+    pub fn increment(&mut self, log_density: impl Into<Real<K>>) -> Outcome {
         self.score_one(log_density.into())
     }
 }

@@ -6,7 +6,7 @@ that they leave out.
     >>> found.verdict, found.selected
     ('missing-physics', ['turbulent-drag'])
 
-`calibrate`, `diagnose`, `simulate` and `import_log` do what the command's
+`calibrate`, `diagnose`, `simulate`, `sweep` and `import_log` do what the command's
 words of these names do, with the same results for the same seed.
 """
 
@@ -22,6 +22,7 @@ from couloir.diagnosis import (
 )
 from couloir.event import Event
 from couloir.imported import Imported, import_log
+from couloir.many import Sweep, sweep
 from couloir.parameter import Parameter
 from couloir.result import Draws, Figure
 from couloir.simulation import Simulation, simulate
@@ -42,8 +43,10 @@ __all__ = [
     "Noise",
     "Parameter",
     "Simulation",
+    "Sweep",
     "calibrate",
     "diagnose",
     "import_log",
     "simulate",
+    "sweep",
 ]

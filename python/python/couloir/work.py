@@ -29,7 +29,7 @@ def work(
             _path(one, Path(folder) / f"event-{i}")
             for i, one in enumerate(subjects)
         ]
-        words = [command, *_words(options), "--", *paths]
+        words = [command, *words_of(options), "--", *paths]
         try:
             return _couloir.made(words, line)
         except _couloir.InputError as error:
@@ -63,7 +63,7 @@ def _named(
     return told
 
 
-def _words(options: Mapping[str, object]) -> list[str]:
+def words_of(options: Mapping[str, object]) -> list[str]:
     """Options as the command has them: `check_rate=True` is `--check-rate`,
     and a mapping is as many words as it has entries.
     """
