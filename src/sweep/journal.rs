@@ -63,10 +63,11 @@ fn written(key: &Key, outcome: &Outcome) -> String {
 
 /// A line's task and what came of it, unless it is torn.
 fn read(line: &str) -> Option<(Key, &str)> {
-    let body = line.get(CHECK + 1..)?;
-    let is_whole = line.get(..CHECK)? == &sha256(body.as_bytes())[..CHECK];
+    let (check, body) = line.split_at_checked(CHECK)?;
+    let body = body.strip_prefix(' ')?;
+    let is_whole = check == &sha256(body.as_bytes())[..CHECK];
     let (key, text) = body.split_at_checked(NAME)?;
-    is_whole.then_some((Key::read(key)?, text.get(1..)?))
+    is_whole.then_some((Key::read(key)?, text.strip_prefix(' ')?))
 }
 
 /// Where the journals are within a sweep's folder.
