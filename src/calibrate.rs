@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use crate::draws::{self, Draws, Summary, summarise};
 use crate::error::{Error, Result, Stop};
 use crate::infer::{
-    Backend, ImportanceSampling, Inference, Map, Mode, Progress, convergence,
-    infer,
+    Backend, ImportanceSampling, Inference, Map, Mode, Progress, Remembered,
+    convergence, infer,
 };
 use crate::mechanism::Role;
 use crate::model::{Assembled, Point, Posterior};
@@ -51,7 +51,12 @@ pub fn calibrate(
     seed: u64,
     progress: &dyn Progress,
 ) -> Result<Calibration> {
-    let posterior = Posterior::new(model)?;
+    let kept = progress.checkpoint();
+    let kept = kept.map(|kept| Remembered::new(model, kept, &named(model)));
+    let posterior = match &kept {
+        Some(remembered) => Posterior::new(remembered)?,
+        None => Posterior::new(model)?,
+    };
     let root = Seed::new(seed);
     let mut found = infer(backend, &posterior, root.child(0), progress)?;
     let draws = draws_of(&found, backend)?;
@@ -85,6 +90,12 @@ pub fn calibrate(
     report.checks.kolmogorov_smirnov_p = chains_alike(&draws);
     report.track = track(model, &median)?;
     Ok(Calibration { report, draws })
+}
+
+/// What tells a model from others of the same run, of the same event.
+fn named(model: &Assembled) -> String {
+    let (friction, noise) = (model.friction(), model.noise());
+    format!("{friction}, {noise}, {}", model.labels().join(", "))
 }
 
 /// The summaries of the draws, with a warning where they are poor; those of

@@ -103,6 +103,7 @@ pub mod block;
 pub mod calibrate;
 #[cfg(feature = "cli")]
 pub mod challenge;
+pub mod checkpoint;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod context;

@@ -1,10 +1,12 @@
 //! A case: what is hidden, and what a user would have of it.
 
+use serde::{Deserialize, Serialize};
+
 use super::effects::Class;
 use super::scatter::Scatter;
 
 /// What places and times are counted in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Coordinate {
     /// Distance along the slope from the track's first point \[m\].
     Arclength,
@@ -13,7 +15,7 @@ pub enum Coordinate {
 }
 
 /// A stretch of the run, in place or time and in time.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Interval {
     /// What `from` and `to` are counted in.
     pub coordinate: Coordinate,

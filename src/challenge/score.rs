@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::case::{Coordinate, Interval, Truth};
 use super::effects::{CATALOGUE, Class};
 use super::scatter::Scatter;
@@ -29,7 +31,7 @@ const ROUNDING: f64 = 1e-9;
 const BINS: usize = 5;
 
 /// What a diagnosis answered, in the words of `diagnosis.json`.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
     /// `adequate`, `missing-physics`, `measurement`, `noise` or
     /// `unexplained`.

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::case::Case;
 use super::score::{Answer, Outcome, Score};
 use crate::error::Result;
-use crate::infer::Progress;
+use crate::infer::{Progress, part};
 
 /// What a diagnosis is for the challenge: an answer to a case.
 ///
@@ -49,7 +49,8 @@ pub fn run(
 ) -> Result<Scored> {
     progress.begin("diagnosing", Some(cases.len() as u64));
     let answer = |case: &Case| {
-        let answer = diagnose(case).map_err(|e| e.within(&case.name))?;
+        let make = || diagnose(case).map_err(|e| e.within(&case.name));
+        let answer = part(progress, &case.name, make)?;
         progress.advance(1);
         let (case, truth) = (case.name.clone(), case.truth.clone());
         Ok(Outcome { case, truth, answer })

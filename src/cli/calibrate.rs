@@ -11,6 +11,7 @@ use super::format::{Formats, Results, described};
 use super::made::{Files, Made};
 use super::progress::Told;
 use super::results::Output;
+use super::resumed::{Resumed, checkpoint, conclude};
 use super::study::Read;
 use super::thin::Thin;
 use super::{Subject, Work, backend_giving, width};
@@ -86,7 +87,10 @@ impl Arguments {
         let mut names = [&FILES[..], &self.formats.names()].concat();
         names.extend(self.figures.figures.then_some(FOLDER));
         let results = self.output.ready(&names, self.subject.paths())?;
-        let Found { found, model } = self.found(laws, told, typed)?;
+        let out = self.output.out.as_deref();
+        let kept = checkpoint(out, &self.computed()?, told)?;
+        let heard = Resumed { heard: told, checkpoint: kept.as_ref() };
+        let Found { found, model } = self.found(laws, &heard, typed)?;
         told.finish();
         let data = match self.formats.have_data() {
             true => gathered(&found, &model),
@@ -97,12 +101,23 @@ impl Arguments {
         let wrote = data.and_then(|data| {
             results.write(|| self.files(&found, &json, &data))
         });
+        conclude(kept, &wrote);
         let text = match self.output.json {
             true => json,
             false => tell(&found) + &results.told(&wrote, &names, width()),
         };
         let answer = self.strict.answer(text, &found.report.doubts);
         Ok(answer.after(wrote))
+    }
+
+    /// All that the calibration follows from.
+    fn computed(&self) -> Result<String> {
+        let options = (&self.work, &self.backend, self.quick, self.rest);
+        let inputs = self.subject.inputs()?;
+        Ok(format!(
+            "{:?} {:?} {options:?} {inputs:?}",
+            self.subject, self.thin
+        ))
     }
 
     /// The same without a folder or a terminal.

@@ -10,12 +10,14 @@ use super::answer::{pretty, wrapped};
 use super::pace::Pace;
 use super::progress::Told;
 use super::results::{Results, folder};
+use super::resumed::{Resumed, checkpoint, conclude};
 use super::study::assemble;
 use super::{at_least_one, width};
 use crate::challenge::{
     Answer, Case, Coordinate, Errors, Interval, Mix, PowerTable, Scored,
     cases, challenge_json, page, power_cases, power_page, run, words,
 };
+use crate::checkpoint::Checkpoint;
 use crate::diagnosis::{
     Diagnosis, Options, Sharing, Together, diagnose, diagnose_together,
 };
@@ -81,13 +83,26 @@ impl Arguments {
         if self.recordings == 2 { Mix::Two } else { Mix::One }
     }
 
+    /// What is kept of a run that was stopped.
+    fn kept(&self, told: &Told) -> Result<Option<Checkpoint>> {
+        let Self { cases, seed, recordings, errors, power, quick, .. } = self;
+        let of = (cases, seed, recordings, errors, power, quick);
+        checkpoint(self.out.as_deref(), &format!("challenge {of:?}"), told)
+    }
+
     /// The diagnoses of all cases.
-    fn scored(&self, all: &[Case], told: &Told) -> Result<Scored> {
+    fn scored(
+        &self,
+        all: &[Case],
+        kept: Option<&Checkpoint>,
+        told: &Told,
+    ) -> Result<Scored> {
         let all_of = if self.quick { QUICK_SECONDS } else { SECONDS };
         let each = all_of[usize::from(self.recordings == 2)];
         let pace = Pace::begun(all.len(), each, told);
-        let scored =
-            run(all, &|case| answer(case, self.seed, self.quick), true, &pace);
+        let heard = Resumed { heard: &pace, checkpoint: kept };
+        let answer = |case: &Case| answer(case, self.seed, self.quick);
+        let scored = run(all, &answer, true, &heard);
         told.finish();
         scored
     }
@@ -96,12 +111,14 @@ impl Arguments {
         let files = ["challenge.html", "challenge.json"];
         let results = Results::ready(self.out.as_deref(), &files, &[])?;
         let all = cases(self.cases, self.seed, self.mix(), self.errors)?;
-        let scored = self.scored(&all, told)?;
+        let kept = self.kept(told)?;
+        let scored = self.scored(&all, kept.as_ref(), told)?;
         let json = pretty(&challenge_json(&scored));
         let wrote = results.write(|| {
             let page = page(&scored, self.mix(), self.errors, self.seed);
             Ok(files.into_iter().zip([page, json.clone()]).collect())
         });
+        conclude(kept, &wrote);
         if self.json {
             return Ok(answer::Answer::from(json).after(wrote));
         }
@@ -117,11 +134,13 @@ impl Arguments {
             Results::ready(self.out.as_deref(), &["power.html"], &[])?;
         let count = self.cases.div_ceil(SIZES.len() * NOISES.len());
         let all = power_cases(mechanism, &SIZES, &NOISES, count, self.seed)?;
-        let scored = self.scored(&all, told)?;
+        let kept = self.kept(told)?;
+        let scored = self.scored(&all, kept.as_ref(), told)?;
         let tables: Vec<PowerTable> = PowerTable::of(&scored.outcomes);
         let wrote = results.write(|| {
             Ok(vec![("power.html", power_page(&tables, self.seed))])
         });
+        conclude(kept, &wrote);
         let text: String = tables.iter().map(PowerTable::markdown).collect();
         Ok(answer::Answer::from(text).after(wrote))
     }

@@ -24,6 +24,7 @@ mod predictive;
 mod progress;
 mod reproduce;
 mod results;
+mod resumed;
 mod said;
 mod screen;
 mod simulate;

@@ -7,6 +7,7 @@ use clap::Args;
 use super::answer::{Answer, pretty, wrapped};
 use super::progress::Told;
 use super::results::{Results, folder};
+use super::resumed::{Resumed, checkpoint, conclude};
 use super::width;
 use crate::error::Result;
 use crate::report;
@@ -35,7 +36,11 @@ const FILES: [&str; 4] =
 impl Arguments {
     pub(super) fn run(&self, told: &Told) -> Result<Answer> {
         let results = Results::ready(self.out.as_deref(), &FILES, &[])?;
-        let found = reproduce(self.samples, self.seed, told)?;
+        let out = self.out.as_deref();
+        let run = format!("reproduce {} {}", self.samples, self.seed);
+        let kept = checkpoint(out, &run, told)?;
+        let heard = Resumed { heard: told, checkpoint: kept.as_ref() };
+        let found = reproduce(self.samples, self.seed, &heard)?;
         told.finish();
         let json = pretty(&reproduction_json(&found));
         let wrote = results.write(|| {
@@ -43,6 +48,7 @@ impl Arguments {
             let texts = [page(&found), json.clone(), m0, m1];
             Ok(FILES.into_iter().zip(texts).collect())
         });
+        conclude(kept, &wrote);
         if self.json {
             return Ok(Answer::from(json).after(wrote));
         }

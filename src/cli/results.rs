@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::error::Result;
-use crate::io::{prepare_run, write_run};
+use crate::io::{Content, prepare_run, write_run, write_run_of};
 
 /// A folder that results can go to, looked at before the work and not after.
 pub(super) fn folder(text: &str) -> std::result::Result<PathBuf, String> {
@@ -77,6 +77,15 @@ impl<'a> Results<'a> {
                 .and_then(|files| write_run(folder, &files))
                 .map_err(|error| error.within("--out")),
         }
+    }
+
+    /// The same of files that are written as they are made.
+    pub(super) fn write_made(
+        &self,
+        files: &[(&Path, &Content<'_>)],
+    ) -> Result<()> {
+        let Some(folder) = self.folder else { return Ok(()) };
+        write_run_of(folder, files).map_err(|error| error.within("--out"))
     }
 
     /// Where the results are, at the end of what is printed: nothing where no

@@ -1,5 +1,6 @@
 //! `couloir sweep`: one command for many events, each of them once.
 
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -17,9 +18,11 @@ use super::results::{Results, folder};
 use crate::error::{Error, Result};
 use crate::infer::Progress as _;
 use crate::physics::friction::Laws;
+#[cfg(feature = "export")]
+use crate::sweep::write_parquet;
 use crate::sweep::{
-    Index, Listed, Outcome, Plan, Ran, Row, Shard, Summary, Task, cores,
-    listed, run,
+    Index, Listed, Outcome, Plan, Ran, Row, Rows, Shard, Summary, Task, cores,
+    listed, page, run, summed, write_csv, write_json,
 };
 
 #[derive(Debug, Args)]
@@ -89,7 +92,13 @@ const REFUSED: [&str; 5] =
 const SHARD: usize = 100;
 
 /// What the summary writes.
-const FILES: [&str; 2] = ["sweep.json", "sweep.csv"];
+const FILES: &[&str] = &[
+    "sweep.html",
+    "sweep.json",
+    "sweep.csv",
+    #[cfg(feature = "export")]
+    "sweep.parquet",
+];
 
 /// Members of a result that are of its run, or as long as all others: they
 /// are had again by the command itself.
@@ -112,48 +121,83 @@ const KEPT: [&str; 4] = ["name", "kind", "log10_bayes_factor", "probability"];
 /// How often a run without a bar says how far it is.
 const EVERY: Duration = Duration::from_secs(30);
 
-/// A listed event with its task, or why it has none.
-type Planned = (Listed, std::result::Result<Task, String>);
+/// The tasks of a list, and why an event of it has none, by its place.
+struct Planned {
+    list: Vec<Listed>,
+    shard: Shard,
+    tasks: Vec<Task>,
+    unread: BTreeMap<usize, String>,
+}
 
 impl Arguments {
     pub(super) fn run(&self, laws: &Laws, told: &Told) -> Result<Answer> {
         self.refuse_options()?;
-        let results = Results::ready(Some(&self.out), &FILES, &[])?;
+        let results = Results::ready(Some(&self.out), FILES, &[])?;
         let list = listed(&self.list)?;
         if let Some(engine) = self.engine {
             let shards = self.shards.unwrap_or(list.len().div_ceil(SHARD));
             let words = self.words_of_a_shard()?;
             return engine.submit(&self.out, &words, shards).map(Answer::from);
         }
-        let shard = self.shard.unwrap_or(Shard::ALL);
-        let planned = self.planned(&list, shard);
-        let tasks: Vec<Task> =
-            planned.iter().filter_map(|(_, t)| t.clone().ok()).collect();
+        let planned = self.planned(list);
+        let ran = self.ran(&planned, laws, told)?;
+        if self.shard.is_some() {
+            return Ok(of_shard(&ran, &planned));
+        }
+        self.concluded(&planned, &results)
+    }
+
+    /// Does what is not done yet.
+    fn ran(&self, planned: &Planned, laws: &Laws, told: &Told) -> Result<Ran> {
         let plan = Plan {
             folder: &self.out,
             jobs: self.jobs.map_or_else(cores, Ok)?,
             retry: self.retry,
-            shard,
-            list: &list,
+            shard: planned.shard,
+            list: &planned.list,
         };
-        let work = |task: &Task| document(laws, &task.words).map(shortened);
+        let verb = self.verb.name();
+        let work = |task: &Task| {
+            let words = task.words(verb, &self.options, &planned.list);
+            document(laws, &words).map(shortened)
+        };
         let begun = Instant::now();
-        told.begin("Events", Some(tasks.len() as u64));
+        told.begin("Events", Some(planned.tasks.len() as u64));
         let mut teller = Teller { told, begun, said: begun, advanced: 0 };
-        let ran = run(&tasks, &plan, &work, &mut |ran| teller.hear(ran))?;
+        let ran =
+            run(&planned.tasks, &plan, &work, &mut |ran| teller.hear(ran))?;
         told.finish();
-        if self.shard.is_some() {
-            return Ok(of_shard(shard, &ran, &planned));
-        }
-        let summary = summed(&self.out, self.verb, &planned)?;
-        let (failed, table) = (summary.failed(), summary.table());
-        let texts = summary.into_files();
-        let wrote = results
-            .write(|| Ok(FILES.into_iter().zip(texts.iter()).collect()));
-        let told = results.told(&wrote, &FILES, super::width());
-        let [json, _] = texts;
-        let text = if self.json { json } else { table + &told };
-        Ok(with_failures(text, failed).after(wrote))
+        Ok(ran)
+    }
+
+    /// What came of all events, of the journals.
+    fn concluded(
+        &self,
+        planned: &Planned,
+        results: &Results<'_>,
+    ) -> Result<Answer> {
+        let index = Index::of(&self.out)?;
+        let rows = |each: &mut dyn FnMut(&Row) -> std::io::Result<()>| {
+            planned.rows(&index, each)
+        };
+        let summary = summed(self.verb.name(), &rows)?;
+        let html = page(&summary, &rows)?;
+        let wrote = results.write_made(&[
+            (Path::new("sweep.html"), &|f| f.write_all(html.as_bytes())),
+            (Path::new("sweep.json"), &|f| write_json(&summary, &rows, f)),
+            (Path::new("sweep.csv"), &|f| write_csv(&summary, &rows, f)),
+            #[cfg(feature = "export")]
+            (Path::new("sweep.parquet"), &|f| {
+                write_parquet(&summary, &rows, f)
+            }),
+        ]);
+        let text = match self.json {
+            true => json_of(&summary, &rows)?,
+            false => {
+                summary.table() + &results.told(&wrote, FILES, super::width())
+            }
+        };
+        Ok(with_failures(text, summary.failed()).after(wrote))
     }
 
     /// The words of a shard's command, but for which shard it is: those before
@@ -204,38 +248,60 @@ impl Arguments {
         before.is_none_or(|text| !text.starts_with('-') || text.contains('='))
     }
 
-    /// The events of a shard, each with its task.
-    fn planned(&self, list: &[Listed], shard: Shard) -> Vec<Planned> {
-        let taken = list.iter().enumerate().filter(|(at, _)| shard.takes(*at));
-        let task = |(_, listed): (usize, &Listed)| {
-            let task = Task::new(self.verb.name(), &self.options, listed);
-            (listed.clone(), task.map_err(|error| error.to_string()))
-        };
-        taken.map(task).collect()
+    /// The tasks of the events of a shard.
+    fn planned(&self, list: Vec<Listed>) -> Planned {
+        let shard = self.shard.unwrap_or(Shard::ALL);
+        let (mut tasks, mut unread) = (Vec::new(), BTreeMap::new());
+        for at in (0..list.len()).filter(|at| shard.takes(*at)) {
+            match Task::new(self.verb.name(), &self.options, &list, at) {
+                Ok(task) => tasks.push(task),
+                Err(error) => {
+                    unread.insert(at, error.to_string());
+                }
+            }
+        }
+        Planned { list, shard, tasks, unread }
     }
 }
 
-/// What came of all events, of the journals.
-fn summed(out: &Path, verb: Verb, planned: &[Planned]) -> Result<Summary> {
-    let index = Index::of(out)?;
-    let mut summary = Summary::new(verb.name());
-    for (listed, task) in planned {
-        let outcome = match task {
-            Ok(task) => index.outcome(&task.key)?,
-            Err(why) => Some(Outcome::Failed(why.clone())),
-        };
-        summary.add(&Row { event: listed.name(), outcome });
+impl Planned {
+    /// Every event in turn with what came of it, of the journals.
+    fn rows(
+        &self,
+        index: &Index,
+        each: &mut dyn FnMut(&Row) -> std::io::Result<()>,
+    ) -> Result<()> {
+        let mut tasks = self.tasks.iter();
+        for (at, listed) in self.list.iter().enumerate() {
+            let outcome = match (self.unread.get(&at), tasks.as_slice()) {
+                (Some(why), _) => Some(Outcome::Failed(why.clone())),
+                (None, []) => None,
+                (None, [task, ..]) => {
+                    tasks.next();
+                    index.outcome(&task.key)?
+                }
+            };
+            each(&Row { event: listed.name(), outcome })
+                .map_err(|error| Error::system(error.to_string()))?;
+        }
+        Ok(())
     }
-    Ok(summary)
 }
 
-fn of_shard(shard: Shard, ran: &Ran, planned: &[Planned]) -> Answer {
-    let unread = planned.iter().filter(|(_, task)| task.is_err()).count();
-    let failed = ran.failed + unread;
+/// `sweep.json` as a text.
+fn json_of(summary: &Summary, rows: Rows<'_>) -> Result<String> {
+    let mut bytes = Vec::new();
+    write_json(summary, rows, &mut bytes)
+        .map_err(|error| Error::system(error.to_string()))?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+fn of_shard(ran: &Ran, planned: &Planned) -> Answer {
+    let failed = ran.failed + planned.unread.len();
     let text = format!(
-        "Shard {shard}: {} events, {} done before, {} done now, {failed} \
-         failed\n",
-        planned.len(),
+        "Shard {}: {} events, {} done before, {} done now, {failed} failed\n",
+        planned.shard,
+        planned.tasks.len() + planned.unread.len(),
         ran.before,
         ran.done
     );

@@ -69,6 +69,8 @@ mod parquet;
 #[cfg(feature = "export")]
 mod png;
 mod recorded;
+#[cfg(feature = "export")]
+mod sheet;
 mod table;
 mod vector;
 #[cfg(feature = "export")]
@@ -81,5 +83,7 @@ pub use latex::latex;
 pub use parquet::parquet;
 #[cfg(feature = "export")]
 pub use png::png;
+#[cfg(all(feature = "export", feature = "cli"))]
+pub(crate) use sheet::{Column, Sheet};
 #[cfg(feature = "export")]
 pub use zarr::zarr;

@@ -1,6 +1,7 @@
 //! What an inference found.
 
 use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
 
 use crate::draws::{Draws, Summary};
 use crate::model::Cost;
@@ -71,7 +72,7 @@ pub struct Mode {
 pub const LEVELS: [f64; 7] = [0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975];
 
 /// One parameter's posterior, integrated over the others.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Marginal {
     /// The parameter's name.
     pub name: String,

@@ -17,7 +17,9 @@ mod inference;
 mod kept;
 pub(crate) mod nested;
 mod profile;
+mod progress;
 mod proposal;
+mod remembered;
 mod schedule;
 mod search;
 pub(crate) mod simplex;
@@ -35,8 +37,10 @@ pub(crate) use estimate::Precision;
 pub use groups::{Group, Grouped};
 pub use inference::{Evidence, Inference, LEVELS, Marginal, Mode};
 pub use kept::kept;
+pub use progress::{Progress, Quiet, part};
 pub use proposal::Mixture;
 pub(crate) use proposal::student_constant;
+pub(crate) use remembered::Remembered;
 pub use search::{HeldGrid, HeldPlace, SearchSpace};
 pub use suited::{Suited, suited};
 pub(crate) use weights::systematic;
@@ -48,20 +52,6 @@ use crate::draws::{Draws, log_sum_exp};
 use crate::error::{Error, Result};
 use crate::model::{Cost, Posterior};
 use crate::seed::Seed;
-
-/// Hears how far an inference has come.
-pub trait Progress: Sync {
-    /// A stretch of work begins, of so many steps where that is known.
-    fn begin(&self, _what: &str, _steps: Option<u64>) {}
-    /// So many steps are done.
-    fn advance(&self, _steps: u64) {}
-}
-
-/// Progress that nobody listens to.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Quiet;
-
-impl Progress for Quiet {}
 
 /// A way to explore a posterior.
 pub trait Backend: Debug + Sync {

@@ -1,6 +1,7 @@
 //! What was read: the files of an event with their checksums.
 
 use std::collections::BTreeMap;
+use std::io::Read;
 use std::path::Path;
 
 use sha2::{Digest, Sha256};
@@ -55,7 +56,22 @@ fn named(text: &str, file: &Path) -> Result<Vec<String>> {
 
 /// The SHA-256 of what is in a file, in hexadecimal digits.
 pub(crate) fn sha256(bytes: &[u8]) -> String {
-    let digest = Sha256::digest(bytes);
+    digits(&Sha256::digest(bytes))
+}
+
+/// The same of what a reader gives.
+pub(crate) fn sha256_of(mut file: impl Read) -> std::io::Result<String> {
+    let (mut hasher, mut bytes) = (Sha256::new(), [0; 1 << 16]);
+    loop {
+        let count = file.read(&mut bytes)?;
+        if count == 0 {
+            return Ok(digits(&hasher.finalize()));
+        }
+        hasher.update(&bytes[..count]);
+    }
+}
+
+fn digits(digest: &[u8]) -> String {
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
@@ -69,6 +85,7 @@ mod tests {
         let known = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61\
                      f20015ad";
         assert_eq!(sha256(b"abc"), known);
+        assert_eq!(sha256_of(&b"abc"[..]).unwrap(), known);
     }
 
     #[test]

@@ -32,10 +32,12 @@ pub(crate) use foreign::{read_any_text, read_bytes};
 #[cfg(feature = "cli")]
 pub(crate) use inputs::{inputs, sha256};
 #[cfg(feature = "cli")]
-pub(crate) use run_folder::{prepare_run, write_run};
+pub(crate) use run_folder::{prepare_run, write_run, write_run_of};
 pub use template::new_event;
 #[cfg(feature = "import")]
 pub(crate) use words::either;
 #[cfg(any(feature = "cli", feature = "import"))]
 pub(crate) use words::{place, quoted};
+#[cfg(feature = "cli")]
+pub(crate) use write::Content;
 pub use write::write_all;

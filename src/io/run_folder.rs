@@ -7,12 +7,15 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+use std::io::Write;
 use std::path::{Component, Path, PathBuf};
 
 use super::event_file::find;
 use super::inputs::sha256;
 use super::words::place;
-use super::write::{drafts, put_in_place, try_folder, write_all};
+use super::write::{
+    Content, put_in_place, summed_draft, try_folder, write_all,
+};
 use crate::error::{Error, Result};
 
 /// What the list is called; `sha256sum --check` reads it.
@@ -58,16 +61,39 @@ pub(crate) fn write_run<N: AsRef<Path>, B: AsRef<[u8]>>(
     folder: &Path,
     files: &[(N, B)],
 ) -> Result<()> {
-    let old = read_list(folder)?;
-    let new: Listed = files
+    let contents: Vec<_> = files
         .iter()
         .map(|(name, bytes)| {
-            let sum = BTreeSet::from([sha256(bytes.as_ref())]);
-            (listed_name(name.as_ref()), sum)
+            let bytes = bytes.as_ref();
+            let write = |file: &mut (dyn Write + Send)| file.write_all(bytes);
+            (name.as_ref(), write)
         })
         .collect();
-    refuse_foreign(folder, new.keys().cloned(), &old)?;
-    let drafts = drafts(folder, files)?;
+    let contents: Vec<(&Path, &Content<'_>)> = contents
+        .iter()
+        .map(|(name, write)| (*name, write as &Content<'_>))
+        .collect();
+    write_run_of(folder, &contents)
+}
+
+/// The same of files that are written as they are made.
+///
+/// # Errors
+/// As [`write_run`], and those of a file's making.
+pub(crate) fn write_run_of(
+    folder: &Path,
+    files: &[(&Path, &Content<'_>)],
+) -> Result<()> {
+    let old = read_list(folder)?;
+    let names = files.iter().map(|(name, _)| listed_name(name));
+    refuse_foreign(folder, names.clone(), &old)?;
+    let drafts = files
+        .iter()
+        .map(|(name, content)| summed_draft(folder.join(name), content))
+        .collect::<Result<Vec<_>>>()?;
+    let (drafts, sums): (Vec<_>, Vec<_>) = drafts.into_iter().unzip();
+    let sums = sums.into_iter().map(|sum| BTreeSet::from([sum]));
+    let new: Listed = names.zip(sums).collect();
     let mut both = old.clone();
     for (name, sums) in &new {
         both.entry(name.clone()).or_default().extend(sums.iter().cloned());

@@ -1,7 +1,7 @@
 //! Writing a folder of files so that none is ever half written.
 
 use std::fs::{self, File};
-use std::io::Write as _;
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::words::place;
@@ -22,6 +22,10 @@ impl Drop for Draft {
     }
 }
 
+/// Writes what is in a file.
+pub(crate) type Content<'a> =
+    dyn Fn(&mut (dyn Write + Send)) -> io::Result<()> + 'a;
+
 /// Writes files, by name, into a folder. It is created where it is not there,
 /// as are the folders that names have before them. Each is written under
 /// another name first and renamed once all are complete; files of the same
@@ -34,17 +38,26 @@ pub fn write_all<N: AsRef<Path>, B: AsRef<[u8]>>(
     folder: &Path,
     files: &[(N, B)],
 ) -> Result<()> {
-    put_in_place(&drafts(folder, files)?)
+    let draft = |(name, bytes): &(N, B)| {
+        draft(folder.join(name), &|file| file.write_all(bytes.as_ref()))
+    };
+    put_in_place(&files.iter().map(draft).collect::<Result<Vec<_>>>()?)
 }
 
-/// The files under their temporary names, complete.
-pub(super) fn drafts<N: AsRef<Path>, B: AsRef<[u8]>>(
-    folder: &Path,
-    files: &[(N, B)],
-) -> Result<Vec<Draft>> {
-    let draft =
-        |(name, bytes): &(N, B)| draft(folder.join(name), bytes.as_ref());
-    files.iter().map(draft).collect()
+/// A file under its temporary name, complete, and the SHA-256 of it.
+#[cfg(feature = "cli")]
+pub(super) fn summed_draft(
+    target: PathBuf,
+    content: &Content<'_>,
+) -> Result<(Draft, String)> {
+    let draft = draft(target, content)?;
+    let sum = File::open(&draft.temporary).and_then(super::inputs::sha256_of);
+    match sum {
+        Ok(sum) => Ok((draft, sum)),
+        Err(error) => {
+            Err(failed(&draft.target, "the file could not be read", &error))
+        }
+    }
 }
 
 /// Gives them their own names.
@@ -63,7 +76,7 @@ pub(super) fn put_in_place(drafts: &[Draft]) -> Result<()> {
 pub(super) fn try_folder(folder: &Path) -> Result<()> {
     let new: Vec<&Path> =
         folder.ancestors().take_while(|path| !path.exists()).collect();
-    let tried = draft(folder.join("couloir"), b"").map(drop);
+    let tried = draft(folder.join("couloir"), &|_| Ok(())).map(drop);
     for made in new {
         // What could not be made is not there to be removed.
         let _ = fs::remove_dir(made);
@@ -76,7 +89,7 @@ pub(super) fn try_folder(folder: &Path) -> Result<()> {
     })
 }
 
-fn draft(target: PathBuf, bytes: &[u8]) -> Result<Draft> {
+fn draft(target: PathBuf, content: &Content<'_>) -> Result<Draft> {
     let folder = target.parent().unwrap_or(Path::new(""));
     fs::create_dir_all(folder).map_err(|error| {
         failed(folder, "the folder could not be created", &error)
@@ -84,9 +97,10 @@ fn draft(target: PathBuf, bytes: &[u8]) -> Result<Draft> {
     let name = target.file_name().unwrap_or_default().to_string_lossy();
     let hidden = format!(".{name}.{}.tmp", std::process::id());
     let draft = Draft { temporary: folder.join(hidden), target };
-    let written = File::create(&draft.temporary).and_then(|mut file| {
-        file.write_all(bytes)?;
-        file.sync_all()
+    let written = File::create(&draft.temporary).and_then(|file| {
+        let mut file = BufWriter::new(file);
+        content(&mut file)?;
+        file.into_inner()?.sync_all()
     });
     match written {
         Ok(()) => Ok(draft),

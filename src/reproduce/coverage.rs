@@ -1,13 +1,14 @@
 //! Table 5 and Figure 8: how often 90 % intervals hold the truth.
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::experiment::{Priors, TRUTH, Which, model, plan, series};
 use crate::draws::{Draws, summarise};
 use crate::error::{Error, Result};
 use crate::infer::{
     Backend, Bridge, Effort, Inference, Map, Marginal, MetropolisHastings,
-    Progress, Quadrature, Quiet, infer,
+    Progress, Quadrature, Quiet, infer, part,
 };
 use crate::model::Posterior;
 use crate::observe::{Event, Series};
@@ -65,6 +66,7 @@ fn log10_ratio(above: &[f64], below: &[f64]) -> Vec<f64> {
 }
 
 /// What one series says under one model.
+#[derive(Serialize, Deserialize)]
 struct Fit {
     names: Vec<String>,
     intervals: Vec<(f64, f64)>,
@@ -174,9 +176,11 @@ pub(super) fn study(
             .par_iter()
             .enumerate()
             .map(|(i, series)| {
-                let event = plan.with_recording(series.clone())?;
                 let seed = seed.child(which as u64).child(i as u64);
-                let fit = asked(event, which, &priors, |p| fit(p, seed));
+                let fit = part(progress, &format!("fit of {seed:?}"), || {
+                    let event = plan.with_recording(series.clone())?;
+                    asked(event, which, &priors, |p| fit(p, seed))
+                });
                 progress.advance(1);
                 fit
             })
@@ -255,25 +259,17 @@ pub(super) fn reading(
         .into_par_iter()
         .map(|i| {
             let seed = seed.child(i);
-            let Some(event) = recorded(plan, &draw(seed.child(0))?)? else {
-                progress.advance(1);
-                return Ok(None);
-            };
-            let fits = Which::BOTH.map(|which| {
-                asked(event.clone(), which, priors, |posterior| {
-                    let seed = seed.child(1);
-                    Ok(explored(posterior, &SCOUTING, seed)?.1)
-                })
+            let both = part(progress, &format!("reading {seed:?}"), || {
+                exact(plan, priors, seed, draw)
             });
             progress.advance(1);
-            let [m0, m1] = fits;
-            Ok(Some([m0?, m1?]))
+            both
         })
         .collect::<Result<Vec<_>>>()?;
     let found: Vec<_> = found.into_iter().flatten().collect();
     let log10_bf = found
         .iter()
-        .map(|[m0, m1]| (evidence(m1) - evidence(m0)) / f64::ln(10.0))
+        .map(|[m0, m1]| (m1.log_evidence - m0.log_evidence) / f64::ln(10.0))
         .collect();
     Ok(Reading {
         what,
@@ -285,8 +281,36 @@ pub(super) fn reading(
     })
 }
 
+/// What quadrature says of one series under one model.
+#[derive(Serialize, Deserialize)]
+struct Exact {
+    marginals: Vec<Marginal>,
+    log_evidence: f64,
+}
+
+/// The same of a series that `draw` makes, under both models; `None` where
+/// its errors carry it off the track.
+fn exact(
+    plan: &Event,
+    priors: &Priors,
+    seed: Seed,
+    draw: &(dyn Fn(Seed) -> Result<Series> + Sync),
+) -> Result<Option<[Exact; 2]>> {
+    let Some(event) = recorded(plan, &draw(seed.child(0))?)? else {
+        return Ok(None);
+    };
+    let of = |which| {
+        asked(event.clone(), which, priors, |posterior| {
+            let (_, found) = explored(posterior, &SCOUTING, seed.child(1))?;
+            let log_evidence = evidence(&found);
+            Ok(Exact { marginals: found.marginals, log_evidence })
+        })
+    };
+    Ok(Some([of(Which::M0)?, of(Which::M1)?]))
+}
+
 /// How many of the 90 % intervals under a model hold the truth, by parameter.
-fn covered(which: Which, found: &[[Inference; 2]]) -> Vec<usize> {
+fn covered(which: Which, found: &[[Exact; 2]]) -> Vec<usize> {
     let truth = which.truth(TRUTH);
     let hits = |(i, truth): (usize, &f64)| {
         let marginals = found.iter().map(|f| &f[which as usize].marginals[i]);
@@ -296,7 +320,7 @@ fn covered(which: Which, found: &[[Inference; 2]]) -> Vec<usize> {
 }
 
 /// The mean width of mu's 90 % interval.
-fn width_mu<'f>(found: impl ExactSizeIterator<Item = &'f Inference>) -> f64 {
+fn width_mu<'f>(found: impl ExactSizeIterator<Item = &'f Exact>) -> f64 {
     let count = found.len().max(1) as f64;
     let quantiles = found.map(|f| &f.marginals[0].quantiles);
     quantiles.map(|q| q[5] - q[1]).sum::<f64>() / count

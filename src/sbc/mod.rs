@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::error::{Error, Result};
-use crate::infer::{Backend, Progress, Quiet};
+use crate::infer::{Backend, Progress, Quiet, part};
 use crate::model::{Model, Point, Posterior};
 use crate::observe::Series;
 use crate::predict::simulate;
@@ -93,8 +93,10 @@ pub fn ranks(
     let rows = (0..replications as u64)
         .into_par_iter()
         .map(|i| {
-            let row =
-                replication(&prior, [remade, fitted], backend, seed.child(i));
+            let seed = seed.child(i);
+            let row = part(progress, &format!("ranks of {seed:?}"), || {
+                replication(&prior, [remade, fitted], backend, seed)
+            });
             progress.advance(1);
             row
         })

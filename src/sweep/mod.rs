@@ -6,16 +6,26 @@
 //! process: a run that is killed loses the tasks that were under way, and two
 //! runs on one folder do each other no harm.
 
+mod files;
 mod journal;
 mod listed;
+mod page;
+#[cfg(feature = "export")]
+mod parquet;
+mod row;
 mod run;
 mod shard;
 mod summary;
 mod task;
 
+pub use files::{Rows, summed, write_csv, write_json};
 pub use journal::{Index, Outcome};
 pub use listed::{Listed, listed};
+pub use page::page;
+#[cfg(feature = "export")]
+pub use parquet::write_parquet;
+pub use row::Row;
 pub use run::{Plan, Ran, cores, run};
 pub use shard::Shard;
-pub use summary::{Row, Summary};
+pub use summary::Summary;
 pub use task::{Key, Task};

@@ -1,49 +1,50 @@
-//! What came of all events: a table, a JSON document and a CSV file.
+//! What came of all events: counted, and told as a table.
 //!
 //! It holds no time and no place where it was computed: it is the same, byte
 //! for byte, however often the work was stopped and wherever it was done.
+//! Rows go by one at a time, and are not held.
 
 use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use super::journal::Outcome;
-
-/// An event of a sweep, and what came of it.
-#[derive(Debug, Clone)]
-pub struct Row {
-    /// What it is called: its path, with the options of its line.
-    pub event: String,
-    /// Nothing yet, a result or a failure.
-    pub outcome: Option<Outcome>,
-}
+use super::row::{Columns, Row, mechanisms, texts};
+use crate::draws::quantile;
+use crate::report::digits::short;
 
 /// How often something was seen.
 #[derive(Debug, Clone, Copy, Default)]
-struct Seen {
-    selected: usize,
+pub(super) struct Seen {
+    pub(super) selected: usize,
     /// The sum of its probabilities.
     probability: f64,
     events: usize,
 }
 
+impl Seen {
+    pub(super) fn mean(&self) -> f64 {
+        self.probability / self.events.max(1) as f64
+    }
+}
+
+/// A parameter over all events.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Medians {
+    pub(super) unit: String,
+    pub(super) values: Vec<f64>,
+}
+
 /// The figures of all events, gathered one after the other.
 #[derive(Debug, Clone, Default)]
 pub struct Summary {
-    verb: String,
-    events: usize,
+    pub(super) verb: String,
+    pub(super) events: usize,
     missing: usize,
-    verdicts: BTreeMap<String, usize>,
+    pub(super) verdicts: BTreeMap<String, usize>,
     mechanisms: BTreeMap<String, Seen>,
-    failures: BTreeMap<String, Vec<String>>,
-    /// The rows of the JSON document and of the CSV file, written out: as
-    /// values they would take ten times the memory.
-    json: String,
-    csv: String,
+    pub(super) parameters: BTreeMap<String, Medians>,
+    pub(super) failures: BTreeMap<String, Vec<String>>,
 }
-
-/// The columns of the CSV file that are the same for every verb.
-const HEAD: &str = "event,status,verdict,selected,probability,message\n";
 
 impl Summary {
     /// Of no event yet, of a sweep with this command.
@@ -54,31 +55,16 @@ impl Summary {
     /// Adds an event.
     pub fn add(&mut self, row: &Row) {
         self.events += 1;
-        let (status, result, why) = match &row.outcome {
-            None => {
-                self.missing += 1;
-                ("missing", None, None)
-            }
-            Some(Outcome::Failed(why)) => {
-                let events = self.failures.entry(why.clone()).or_default();
-                events.push(row.event.clone());
-                ("failed", None, Some(why.as_str()))
-            }
-            Some(Outcome::Done(result)) => {
-                self.count(result);
-                ("done", Some(result), None)
-            }
-        };
-        let mut document = json!({"event": row.event, "status": status});
-        if let Some(result) = result {
-            document["result"] = result.clone();
+        if row.outcome.is_none() {
+            self.missing += 1;
         }
-        if let Some(why) = why {
-            document["message"] = why.into();
+        if let Some(why) = row.message() {
+            let events = self.failures.entry(why.to_owned()).or_default();
+            events.push(row.event.clone());
         }
-        let comma = if self.json.is_empty() { "" } else { ",\n" };
-        self.json.push_str(&format!("{comma}    {document}"));
-        self.csv.push_str(&csv_line(&row.event, status, result, why));
+        if let Some(result) = row.result() {
+            self.count(result);
+        }
     }
 
     fn count(&mut self, result: &Value) {
@@ -88,14 +74,18 @@ impl Summary {
         for selected in texts(&result["selected"]) {
             self.mechanisms.entry(selected).or_default().selected += 1;
         }
-        for mechanism in result["mechanisms"].as_array().into_iter().flatten()
-        {
-            let name = mechanism["name"].as_str();
-            let probability = mechanism["probability"].as_f64();
-            if let (Some(name), Some(probability)) = (name, probability) {
-                let seen = self.mechanisms.entry(name.to_owned()).or_default();
-                seen.probability += probability;
-                seen.events += 1;
+        for (name, probability) in mechanisms(result) {
+            let seen = self.mechanisms.entry(name.to_owned()).or_default();
+            seen.probability += probability;
+            seen.events += 1;
+        }
+        let parameters = result["parameters"].as_object();
+        for (name, parameter) in parameters.into_iter().flatten() {
+            if let Some(median) = parameter["q50"].as_f64() {
+                let all = self.parameters.entry(name.clone()).or_default();
+                all.values.push(median);
+                let unit = parameter["unit"].as_str().unwrap_or("1");
+                unit.clone_into(&mut all.unit);
             }
         }
     }
@@ -115,30 +105,16 @@ impl Summary {
         self.missing
     }
 
-    /// `sweep.json` and `sweep.csv`. The rows stay where they were gathered:
-    /// of 10^5 events they are some 250 MB.
-    pub fn into_files(mut self) -> [String; 2] {
-        let head = json!({
-            "schema": 1,
-            "verb": self.verb,
-            "events": self.events,
-            "done": self.done(),
-            "failed": self.failed(),
-            "missing": self.missing,
-            "verdicts": self.verdicts,
-            "mechanisms": self.mechanisms_json(),
-            "failures": self.failures_json(),
-        });
-        let head = format!("{head:#}");
-        let head = head.strip_suffix('}').unwrap_or(&head).trim_end();
-        self.json.insert_str(0, &format!("{head},\n  \"rows\": [\n"));
-        self.json.push_str("\n  ]\n}\n");
-        self.csv.insert_str(0, HEAD);
-        [self.json, self.csv]
+    /// The columns that its tables have.
+    pub(super) fn columns(&self) -> Columns {
+        Columns {
+            mechanisms: self.mechanisms.keys().cloned().collect(),
+            parameters: self.parameters.keys().cloned().collect(),
+        }
     }
 
     /// Mechanisms by how often they were selected, then by their probability.
-    fn ranked(&self) -> Vec<(&str, Seen)> {
+    pub(super) fn ranked(&self) -> Vec<(&str, Seen)> {
         let all = self.mechanisms.iter();
         let mut all: Vec<_> =
             all.map(|(name, seen)| (name.as_str(), *seen)).collect();
@@ -149,31 +125,46 @@ impl Summary {
         all
     }
 
-    fn mechanisms_json(&self) -> Vec<Value> {
-        let document = |(name, seen): (&str, Seen)| {
+    /// `sweep.json` without its rows.
+    pub(super) fn document(&self) -> Value {
+        let mechanism = |(name, seen): (&str, Seen)| {
             json!({
                 "name": name,
                 "selected": seen.selected,
                 "mean_probability": seen.mean(),
             })
         };
-        self.ranked().into_iter().map(document).collect()
+        let failure =
+            |(why, events)| json!({"message": why, "events": events});
+        let mechanisms = self.ranked().into_iter().map(mechanism);
+        let failures = self.failures.iter().map(failure);
+        json!({
+            "schema": 1,
+            "verb": self.verb,
+            "events": self.events,
+            "done": self.done(),
+            "failed": self.failed(),
+            "missing": self.missing,
+            "verdicts": self.verdicts,
+            "mechanisms": mechanisms.collect::<Vec<_>>(),
+            "failures": failures.collect::<Vec<_>>(),
+        })
     }
 
-    fn failures_json(&self) -> Vec<Value> {
-        let document = |(why, events): (&String, &Vec<String>)| json!({"message": why, "events": events});
-        self.failures.iter().map(document).collect()
-    }
-
-    /// The table of a terminal.
-    pub fn table(&self) -> String {
-        let mut text = format!(
-            "{} events: {} done, {} failed, {} not done yet\n",
+    /// How many events there are, and what became of them.
+    pub(super) fn counts(&self) -> String {
+        format!(
+            "{} events: {} done, {} failed, {} not done yet",
             self.events,
             self.done(),
             self.failed(),
             self.missing
-        );
+        )
+    }
+
+    /// The table of a terminal.
+    pub fn table(&self) -> String {
+        let mut text = self.counts() + "\n";
         if !self.verdicts.is_empty() {
             text.push_str(&format!("\n{:28} {:>9}\n", "verdict", "events"));
         }
@@ -194,6 +185,7 @@ impl Summary {
                 seen.mean()
             ));
         }
+        text.push_str(&self.medians());
         for (why, events) in &self.failures {
             let first = events.first().map_or("", String::as_str);
             let count = events.len();
@@ -203,65 +195,39 @@ impl Summary {
         }
         text
     }
-}
 
-impl Seen {
-    fn mean(&self) -> f64 {
-        self.probability / self.events.max(1) as f64
+    /// Where the events' medians of each parameter lie.
+    fn medians(&self) -> String {
+        let mut text = String::new();
+        if !self.parameters.is_empty() {
+            text.push_str(&format!(
+                "\n{:28} {:>9} {:>9} {:>9}  events' medians\n",
+                "parameter", "5 %", "half", "95 %"
+            ));
+        }
+        for (name, medians) in &self.parameters {
+            let [low, half, high] = medians.quantiles().map(|x| short(x, 3));
+            text.push_str(&format!(
+                "{name:28} {low:>9} {half:>9} {high:>9}  {}\n",
+                medians.unit
+            ));
+        }
+        text
     }
 }
 
-fn texts(list: &Value) -> Vec<String> {
-    let all = list.as_array().into_iter().flatten();
-    all.filter_map(|text| text.as_str().map(str::to_owned)).collect()
-}
-
-fn csv_line(
-    event: &str,
-    status: &str,
-    result: Option<&Value>,
-    why: Option<&str>,
-) -> String {
-    let none = Value::Null;
-    let result = result.unwrap_or(&none);
-    let selected = texts(&result["selected"]);
-    let all = result["mechanisms"].as_array().into_iter().flatten();
-    let of_selected = |m: &&Value| {
-        m["name"]
-            .as_str()
-            .is_some_and(|name| selected.iter().any(|s| s == name))
-    };
-    let probability: Option<f64> = all
-        .filter(of_selected)
-        .filter_map(|m| m["probability"].as_f64())
-        .reduce(f64::min);
-    let cells = [
-        event.to_owned(),
-        status.to_owned(),
-        result["verdict"].as_str().unwrap_or_default().to_owned(),
-        selected.join(" + "),
-        probability.map_or(String::new(), |p| p.to_string()),
-        why.unwrap_or_default().to_owned(),
-    ];
-    cells.map(|text| cell(&text)).join(",") + "\n"
-}
-
-/// A cell that a spreadsheet takes for text: what begins as a formula does
-/// gets an apostrophe before it (OWASP, CSV injection).
-fn cell(text: &str) -> String {
-    let is_formula = text.starts_with(['=', '+', '-', '@', '\t', '\r']);
-    let safe = match is_formula && text.parse::<f64>().is_err() {
-        true => format!("'{text}"),
-        false => text.to_owned(),
-    };
-    match safe.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", safe.replace('"', "\"\"")),
-        false => safe,
+impl Medians {
+    /// Their 5 %, 50 % and 95 % quantiles.
+    pub(super) fn quantiles(&self) -> [f64; 3] {
+        let mut sorted = self.values.clone();
+        sorted.sort_by(f64::total_cmp);
+        [0.05, 0.5, 0.95].map(|level| quantile(&sorted, level))
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::journal::Outcome;
     use super::*;
 
     fn summary() -> Summary {
@@ -273,6 +239,7 @@ mod tests {
                 {"name": "none", "probability": 0.25},
                 {"name": "surge", "probability": 0.75},
             ],
+            "parameters": {"mu": {"q50": 0.25, "unit": "1"}},
         });
         let outcomes = [
             Some(Outcome::Done(result)),
@@ -286,47 +253,21 @@ mod tests {
     }
 
     #[test]
-    fn the_json_is_whole_and_counts() {
-        let [json, _] = summary().into_files();
-        let document: Value = serde_json::from_str(&json).unwrap();
+    fn everything_is_counted() {
+        let document = summary().document();
         assert_eq!(document["events"], 3);
         let counts = ["done", "failed", "missing"].map(|k| &document[k]);
         assert_eq!(counts, [&json!(1); 3]);
-        assert_eq!(
-            document["rows"][0]["result"]["verdict"],
-            "missing-physics"
-        );
         assert_eq!(document["mechanisms"][0]["name"], "surge");
         assert_eq!(document["mechanisms"][0]["mean_probability"], 0.75);
         assert_eq!(document["failures"][0]["events"], json!(["=1+1"]));
     }
 
     #[test]
-    fn the_json_of_nothing_is_whole() {
-        let mut empty = Summary::new("calibrate");
-        empty.add(&Row { event: "a".to_owned(), outcome: None });
-        let [json, _] = empty.into_files();
-        let document: Value = serde_json::from_str(&json).unwrap();
-        assert_eq!(document["missing"], 1);
-    }
-
-    #[test]
-    fn no_cell_is_a_formula() {
-        let [_, csv] = summary().into_files();
-        let lines: Vec<&str> = csv.lines().collect();
-        assert_eq!(lines[1], "a,done,missing-physics,surge,0.75,");
-        let failed = "'=1+1,failed,,,,\"no \"\"speed\"\", a=1\"";
-        assert_eq!(lines[2], failed);
-        assert_eq!(cell("-2.5"), "-2.5");
-        for text in ["=x", "+x", "-x", "@x", "\tx"] {
-            assert_eq!(cell(text).trim_matches('"'), format!("'{text}"));
-        }
-    }
-
-    #[test]
     fn the_table_fits_a_terminal() {
         let table = summary().table();
         assert!(table.contains("3 events: 1 done, 1 failed, 1 not done yet"));
+        assert!(table.contains("mu"), "{table}");
         assert!(table.lines().all(|line| line.chars().count() <= 80));
     }
 }

@@ -36,24 +36,27 @@ impl fmt::Display for Key {
 }
 
 /// What is to be done with one event.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub struct Task {
     /// Its name.
     pub key: Key,
-    /// The command's words: its name, its options, the event.
-    pub words: Vec<OsString>,
+    /// Its event's place in the list, from 0.
+    pub at: usize,
 }
 
 impl Task {
-    /// The task of an event under a command and its options.
+    /// The task of the event at a place of a list, under a command and its
+    /// options.
     ///
     /// # Errors
     /// Files of the event that cannot be read.
     pub fn new(
         verb: &str,
         options: &[OsString],
-        listed: &Listed,
+        list: &[Listed],
+        at: usize,
     ) -> Result<Self> {
+        let listed = &list[at];
         let own = options.iter().chain(&listed.options);
         let mut named = vec![PROGRAM.to_owned(), verb.to_owned()];
         named.extend(own.clone().map(|o| o.to_string_lossy().into_owned()));
@@ -62,12 +65,23 @@ impl Task {
         // Lengths keep apart what would read the same when joined.
         let text: String =
             named.iter().map(|n| format!("{}:{n}\n", n.len())).collect();
+        let key = Key::read(&sha256(text.as_bytes()));
+        Ok(Self { key: key.unwrap_or(Key([0; 32])), at })
+    }
+
+    /// The command's words: its name, its options, the event.
+    pub fn words(
+        &self,
+        verb: &str,
+        options: &[OsString],
+        list: &[Listed],
+    ) -> Vec<OsString> {
+        let listed = &list[self.at];
         let mut words = vec![OsString::from(verb)];
-        words.extend(own.cloned());
+        words.extend(options.iter().chain(&listed.options).cloned());
         // Behind it nothing is an option, whatever a folder is called.
         words.push("--".into());
         words.push(listed.event.clone().into_os_string());
-        let key = Key::read(&sha256(text.as_bytes()));
-        Ok(Self { key: key.unwrap_or(Key([0; 32])), words })
+        words
     }
 }

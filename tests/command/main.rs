@@ -6,5 +6,6 @@ mod export;
 mod habits;
 #[cfg(feature = "import")]
 mod import;
+mod resume;
 mod sweep;
 mod words;
