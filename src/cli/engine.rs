@@ -40,7 +40,7 @@ impl Engine {
         let path = out.join(SCRIPT);
         let folder = out.join("engine");
         let mut command = self.command(shards);
-        let told = run(command.current_dir(&folder).arg("sweep.sh"))?;
+        let told = run(command.current_dir(&folder))?;
         let text = format!(
             "Submitted {shards} shards by {}: {}. When they have ended, run \
              the same without --engine for the summary.",
@@ -53,8 +53,8 @@ impl Engine {
     fn command(self, shards: usize) -> Command {
         let array = format!("--array=1-{shards}");
         let (program, words) = match self {
-            Self::Slurm => ("sbatch", vec![array]),
-            Self::Hq => ("hq", vec!["submit".to_owned(), array]),
+            Self::Slurm => ("sbatch", [&*array, "sweep.sh"].to_vec()),
+            Self::Hq => ("hq", ["submit", &array, "sh", "sweep.sh"].to_vec()),
         };
         let mut command = Command::new(program);
         command.args(words);
