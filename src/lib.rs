@@ -123,6 +123,7 @@ pub mod noise;
 pub mod observe;
 pub mod ode;
 pub mod physics;
+pub mod population;
 pub mod predict;
 pub mod prelude;
 pub mod prior;

@@ -26,6 +26,7 @@ use crate::report::{
     Origin, calibration_json, in_words, noises, page, picture, pictures, table,
 };
 use crate::seed::Seed;
+use crate::sweep::DRAWS;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -133,10 +134,12 @@ impl Arguments {
         Ok(Made { files, data: gathered(&found, &model) })
     }
 
-    /// `calibration.json` alone.
+    /// `calibration.json` alone, with draws of the law's parameters.
     pub(super) fn document(&self, laws: &Laws) -> Result<Value> {
-        let Found { found, .. } = self.found(laws, &Quiet, "")?;
-        Ok(self.value(&found, None))
+        let Found { found, model } = self.found(laws, &Quiet, "")?;
+        let mut value = self.value(&found, None);
+        value[DRAWS] = draws_of_law(&found, &model);
+        Ok(value)
     }
 
     /// The event's calibration, with where it comes from.
@@ -228,6 +231,24 @@ impl Arguments {
         found.report.warnings.splice(..0, said.warnings);
         Ok(Found { found, model })
     }
+}
+
+/// How many draws a document has of each parameter: what a population of
+/// events says is then off by less than a tenth of its standard deviation
+/// (docs/population.md), at 6 kB for two parameters.
+const KEPT: usize = 300;
+
+/// Some of the draws of the law's parameters, by their names, to six digits:
+/// more than a draw is worth.
+fn draws_of_law(found: &Calibration, model: &Assembled) -> Value {
+    let rows = found.draws.thinned(KEPT);
+    let column = |name: String| {
+        let at = found.draws.names().iter().position(|own| *own == name)?;
+        let six = |x: f64| format!("{x:.5e}").parse().unwrap_or(x);
+        let values: Vec<f64> = rows.iter().map(|row| six(row[at])).collect();
+        Some((name, Value::from(values)))
+    };
+    model.law_names().into_iter().filter_map(column).collect()
 }
 
 /// The draws with what they say of the data.

@@ -30,6 +30,11 @@ Examples:
   couloir sweep list.csv --verb calibrate --out results -- --noise=infer
   couloir sweep survey --out results --retry";
 
+pub(super) const POPULATION: &str = "\
+Examples:
+  couloir population results --out population
+  couloir population results --of mu";
+
 pub(super) const SIMULATE: &str = "\
 Examples:
   couloir simulate my-event --set mu=0.3 --set xi=1200

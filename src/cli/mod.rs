@@ -20,6 +20,7 @@ mod made;
 mod man;
 mod new;
 mod pace;
+mod population;
 mod predictive;
 mod progress;
 mod reproduce;
@@ -93,6 +94,9 @@ enum Command {
     /// stop
     #[command(after_help = examples::SWEEP)]
     Sweep(sweep::Arguments),
+    /// Infer what the events of a sweep have in common
+    #[command(after_help = examples::POPULATION)]
+    Population(population::Arguments),
     /// Diagnose events that hide one effect each, and score the answers
     #[command(after_help = examples::CHALLENGE)]
     Challenge(challenge::Arguments),
@@ -302,6 +306,7 @@ impl Command {
             Self::Compare(arguments) => arguments.run(laws, told),
             Self::Diagnose(arguments) => arguments.run(laws, told, typed),
             Self::Sweep(arguments) => arguments.run(laws, told),
+            Self::Population(arguments) => arguments.run(told),
             Self::Challenge(arguments) => arguments.run(told),
             Self::Simulate(arguments) => arguments.run(laws),
             Self::New(arguments) => arguments.run().map(Answer::from),

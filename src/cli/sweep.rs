@@ -273,15 +273,16 @@ impl Planned {
     ) -> Result<()> {
         let mut tasks = self.tasks.iter();
         for (at, listed) in self.list.iter().enumerate() {
-            let outcome = match (self.unread.get(&at), tasks.as_slice()) {
-                (Some(why), _) => Some(Outcome::Failed(why.clone())),
-                (None, []) => None,
-                (None, [task, ..]) => {
-                    tasks.next();
-                    index.outcome(&task.key)?
-                }
+            let task = match self.unread.contains_key(&at) {
+                true => None,
+                false => tasks.next().map(|task| task.key),
             };
-            each(&Row { event: listed.name(), outcome })
+            let outcome = match (self.unread.get(&at), &task) {
+                (Some(why), _) => Some(Outcome::Failed(why.clone())),
+                (None, Some(key)) => index.outcome(key)?,
+                (None, None) => None,
+            };
+            each(&Row { event: listed.name(), task, outcome })
                 .map_err(|error| Error::system(error.to_string()))?;
         }
         Ok(())

@@ -123,6 +123,7 @@ fn statistic(s: &Statistic) -> Value {
 fn parameter(p: &ParameterReport) -> Value {
     json!({
         "unit": p.unit,
+        "prior": p.prior_text,
         "map": p.map,
         "mean": p.mean,
         "sd": p.sd,

@@ -80,7 +80,7 @@ mod tests {
         let rows = |each: &mut dyn FnMut(&Row) -> io::Result<()>| {
             for (event, outcome) in events {
                 let (event, outcome) = ((*event).to_owned(), outcome.clone());
-                each(&Row { event, outcome }).unwrap();
+                each(&Row { event, task: None, outcome }).unwrap();
             }
             Ok(())
         };

@@ -24,7 +24,8 @@ pub use listed::{Listed, listed};
 pub use page::page;
 #[cfg(feature = "export")]
 pub use parquet::write_parquet;
-pub use row::Row;
+pub(crate) use row::csv_cell;
+pub use row::{DRAWS, Row};
 pub use run::{Plan, Ran, cores, run};
 pub use shard::Shard;
 pub use summary::Summary;

@@ -235,7 +235,9 @@ mod tests {
                     0 => Outcome::Failed("<i>".to_owned()),
                     _ => Outcome::Done(done.clone()),
                 };
-                if each(&Row { event, outcome: Some(outcome) }).is_err() {
+                if each(&Row { event, task: None, outcome: Some(outcome) })
+                    .is_err()
+                {
                     return Err(crate::Error::system("ended"));
                 }
             }

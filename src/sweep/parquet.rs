@@ -21,7 +21,7 @@ pub fn write_parquet(
     file: &mut (dyn Write + Send),
 ) -> io::Result<()> {
     let columns = summary.columns();
-    let none = Row { event: String::new(), outcome: None };
+    let none = Row { event: String::new(), task: None, outcome: None };
     let kinds = put(&columns, std::slice::from_ref(&none));
     let named: Vec<_> = columns.names().into_iter().zip(kinds).collect();
     let mut sheet = Sheet::new(file, "events", &named, Vec::new())?;
@@ -88,7 +88,8 @@ mod tests {
             for of in 0..HELD + 3 {
                 let outcome =
                     (of % 2 == 0).then(|| Outcome::Done(done.clone()));
-                each(&Row { event: format!("e{of}"), outcome }).unwrap();
+                each(&Row { event: format!("e{of}"), task: None, outcome })
+                    .unwrap();
             }
             Ok(())
         };

@@ -3,12 +3,18 @@
 use serde_json::{Value, json};
 
 use super::journal::Outcome;
+use super::task::Key;
+
+/// The member of a result that holds draws, by parameter.
+pub const DRAWS: &str = "draws";
 
 /// An event of a sweep, and what came of it.
 #[derive(Debug, Clone)]
 pub struct Row {
     /// What it is called: its path, with the options of its line.
     pub event: String,
+    /// Its task, where its files could be read.
+    pub task: Option<Key>,
     /// Nothing yet, a result or a failure.
     pub outcome: Option<Outcome>,
 }
@@ -41,14 +47,26 @@ impl Row {
     /// The row of `sweep.json`.
     pub(super) fn document(&self) -> Value {
         let mut row = json!({"event": self.event, "status": self.status()});
+        if let Some(key) = &self.task {
+            row["task"] = key.to_string().into();
+        }
         if let Some(result) = self.result() {
-            row["result"] = result.clone();
+            row["result"] = without_draws(result.clone());
         }
         if let Some(why) = self.message() {
             row["message"] = why.into();
         }
         row
     }
+}
+
+/// A result without its draws, which stay where the task's line is: they are
+/// as long as all else.
+fn without_draws(mut result: Value) -> Value {
+    if let Some(members) = result.as_object_mut() {
+        members.remove(DRAWS);
+    }
+    result
 }
 
 /// What a table says of an event in one of its columns.
@@ -146,7 +164,7 @@ pub(super) fn csv_line(cells: &[Cell]) -> String {
 
 /// A cell that a spreadsheet takes for text: what begins as a formula does
 /// gets an apostrophe before it (OWASP, CSV injection).
-fn csv_cell(text: &str) -> String {
+pub(crate) fn csv_cell(text: &str) -> String {
     let is_formula = text.starts_with(['=', '+', '-', '@', '\t', '\r']);
     let safe = match is_formula {
         true => format!("'{text}"),
@@ -177,7 +195,7 @@ mod tests {
         let mu = json!({"q05": 0.1, "q50": 0.2, "q95": 0.3});
         let result = json!({"parameters": {"mu": mu}});
         let outcome = Some(Outcome::Done(result));
-        let row = Row { event: "a".to_owned(), outcome };
+        let row = Row { event: "a".to_owned(), task: None, outcome };
         let columns = Columns {
             parameters: vec!["mu".to_owned(), "xi".to_owned()],
             ..Columns::default()

@@ -247,7 +247,7 @@ mod tests {
             None,
         ];
         for (outcome, event) in outcomes.into_iter().zip(["a", "=1+1", "c"]) {
-            summary.add(&Row { event: event.to_owned(), outcome });
+            summary.add(&Row { event: event.to_owned(), task: None, outcome });
         }
         summary
     }

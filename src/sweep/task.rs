@@ -15,8 +15,9 @@ use crate::report::PROGRAM;
 pub struct Key([u8; 32]);
 
 impl Key {
-    /// Reads what [`Display`](fmt::Display) writes: 64 hexadecimal digits.
-    pub(super) fn read(text: &str) -> Option<Self> {
+    /// Reads what [`Display`](fmt::Display) writes: 64 hexadecimal digits;
+    /// `None` of another text.
+    pub fn read(text: &str) -> Option<Self> {
         let mut bytes = [0; 32];
         if text.len() != 2 * bytes.len() || !text.is_ascii() {
             return None;
