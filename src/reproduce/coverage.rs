@@ -259,7 +259,7 @@ pub(super) fn reading(
         .into_par_iter()
         .map(|i| {
             let seed = seed.child(i);
-            let both = part(progress, &format!("reading {seed:?}"), || {
+            let both = part(progress, &format!("{what}, {seed:?}"), || {
                 exact(plan, priors, seed, draw)
             });
             progress.advance(1);
