@@ -1,7 +1,25 @@
-//! Names that a misspelt one may have meant.
+//! Foreign words in messages: made safe to print, and what a misspelt one
+//! may have meant.
 
-/// The longest word, in bytes, that is taken for a misspelt name.
+/// The longest piece of foreign text in a message, in characters, and the
+/// longest word, in bytes, that is taken for a misspelt name.
 const LONGEST: usize = 60;
+
+/// Foreign text in quotes, its control characters escaped and its end cut.
+pub(crate) fn quoted(text: &str) -> String {
+    match text.char_indices().nth(LONGEST) {
+        None => format!("{text:?}"),
+        Some((end, _)) => format!("{:?}...", &text[..end]),
+    }
+}
+
+/// Whether a character would break or turn a line of a message: controls,
+/// line separators, and marks without a width or of a writing direction.
+pub(crate) fn breaks_line(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
+            | '\u{2060}'..='\u{2069}' | '\u{feff}')
+}
 
 /// The name that a misspelt one is closest to, if any is close: the case
 /// aside, at most one letter in three is wrong, and one more.
@@ -35,6 +53,13 @@ fn edits(from: &str, to: &str) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn foreign_text_stays_on_one_line_and_short() {
+        assert_eq!(quoted("a\nb\u{1b}[2J"), r#""a\nb\u{1b}[2J""#);
+        let long = quoted(&"é".repeat(500));
+        assert_eq!(long.chars().count(), LONGEST + 5);
+    }
 
     #[test]
     fn edits_are_counted() {

@@ -15,6 +15,7 @@ use crate::model::Assembled;
 use crate::physics::State;
 use crate::physics::friction::Laws;
 use crate::scalar::Plain;
+use crate::spelling::quoted;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -94,14 +95,17 @@ impl Arguments {
         let mut set: Vec<Option<f64>> = vec![None; names.len()];
         for text in &self.values {
             let (name, value) = text.split_once('=').ok_or_else(|| {
-                Error::input(format!("--set {text:?}: expected NAME=VALUE"))
+                Error::input(format!(
+                    "--set {}: expected NAME=VALUE",
+                    quoted(text)
+                ))
             })?;
             let place = names.iter().position(|n| *n == name.trim());
             let Some(place) = place else {
                 return Err(Error::input(format!(
-                    "--set {text:?}: the model has no parameter {:?}; it has \
-                     {}",
-                    name.trim(),
+                    "--set {}: the model has no parameter {}; it has {}",
+                    quoted(text),
+                    quoted(name.trim()),
                     names.join(", ")
                 )));
             };
@@ -109,7 +113,8 @@ impl Arguments {
             set[place] = value.filter(|v| v.is_finite());
             if set[place].is_none() {
                 return Err(Error::input(format!(
-                    "--set {text:?}: expected a finite number after ="
+                    "--set {}: expected a finite number after =",
+                    quoted(text)
                 )));
             }
         }

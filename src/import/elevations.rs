@@ -9,6 +9,10 @@ use super::options::Options;
 use crate::error::{Error, Result};
 use crate::io::place;
 
+/// Further than any mass has slid that was recorded \[m\]. A track has a point
+/// each metre or so, and has to have room.
+const LONGEST: f64 = 100_000.0;
+
 /// The track, whose x is 0 where the first recording begins.
 pub(super) fn ground(
     options: &Options,
@@ -27,6 +31,18 @@ pub(super) fn ground(
         }
     };
     let (begin, end) = along.span();
+    if end - begin > LONGEST {
+        let one = all.first().map(|one| place(&one.log.path));
+        return Err(Error::input(format!(
+            "{}: the recording goes {:.0} km far; expected at most {:.0}: are \
+             the places metres, or degrees? name columns and units with \
+             --columns, and cut off what is not of the motion with --from \
+             and --to",
+            one.unwrap_or_default(),
+            1e-3 * (end - begin),
+            1e-3 * LONGEST
+        )));
+    }
     track(&samples, begin, end, options.smooth).ok_or_else(|| {
         Error::input(format!(
             "{}: elevations are known from {:.0} to {:.0} m along the path, \

@@ -9,6 +9,7 @@ use tiff::tags::Tag;
 use tiff::{ColorType, TiffError};
 
 use super::grid::{Extent, Grid, MOST, bounded, elevation};
+use super::tiff_tags;
 use crate::error::{Error, Result};
 use crate::io::{place, quoted};
 
@@ -23,6 +24,13 @@ pub(super) fn read(bytes: &[u8], path: &Path) -> Result<Grid> {
 }
 
 fn grid(bytes: &[u8]) -> Result<Grid, String> {
+    if !tiff_tags::fit(bytes) {
+        return Err(
+            "has a tag that is longer than the file; expected a whole \
+                    GeoTIFF: copy or export it again"
+                .to_owned(),
+        );
+    }
     let mut image =
         Decoder::new(Cursor::new(bytes)).map_err(|e| broken(&e))?;
     let (columns, rows) = image.dimensions().map_err(|e| broken(&e))?;

@@ -31,9 +31,11 @@ mod phase;
 mod picture;
 mod plane;
 mod role;
+mod shapes;
 mod smooth;
 mod source;
 mod table;
+mod tiff_tags;
 mod together;
 mod work;
 

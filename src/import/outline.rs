@@ -1,12 +1,11 @@
 //! The line of a path as a file has it: a shapefile or GeoJSON.
 
-use std::io::Cursor;
 use std::path::Path;
 
 use geojson::{GeoJson, Geometry, GeometryValue, Position};
-use shapefile::{Shape, ShapeReader};
 
 use super::crs::Place;
+use super::shapes;
 use crate::error::{Error, Result};
 use crate::io::{place, quoted};
 
@@ -22,47 +21,18 @@ pub(super) struct Outline {
 }
 
 /// Reads a shapefile's lines; `prj` is the text beside it.
-pub(super) fn shapes(
+pub(super) fn shapefile(
     bytes: &[u8],
     prj: Option<&str>,
     path: &Path,
 ) -> Result<Outline> {
     let wrong = |what: String| Error::input(what).within(place(path));
-    let broken = |error: shapefile::Error| {
+    let lines = shapes::lines(bytes).map_err(|why| {
         wrong(format!(
-            "is no shapefile that can be read ({}); expected a .shp with a \
-             line: export it again",
-            quoted(&error.to_string())
+            "is no shapefile that can be read: {why}; expected a .shp with a \
+             line: export it again"
         ))
-    };
-    let mut reader = ShapeReader::new(Cursor::new(bytes)).map_err(broken)?;
-    let mut lines: Vec<Vec<Place>> = Vec::new();
-    for shape in reader.iter_shapes() {
-        match shape.map_err(broken)? {
-            Shape::Polyline(line) => {
-                let parts = line.into_inner().into_iter();
-                lines
-                    .extend(parts.map(|part| {
-                        part.iter().map(|p| (p.x, p.y)).collect()
-                    }));
-            }
-            Shape::PolylineM(line) => {
-                let parts = line.into_inner().into_iter();
-                lines
-                    .extend(parts.map(|part| {
-                        part.iter().map(|p| (p.x, p.y)).collect()
-                    }));
-            }
-            Shape::PolylineZ(line) => {
-                let parts = line.into_inner().into_iter();
-                lines
-                    .extend(parts.map(|part| {
-                        part.iter().map(|p| (p.x, p.y)).collect()
-                    }));
-            }
-            _ => {}
-        }
-    }
+    })?;
     let is_geographic =
         prj.is_some_and(|text| text.trim_start().starts_with("GEOGCS"));
     longest(lines, is_geographic).map_err(wrong)
@@ -146,20 +116,11 @@ fn longest(
 
 #[cfg(test)]
 mod tests {
+    use super::shapes::tests::shapefile as written;
     use super::*;
 
     fn json(text: &str) -> Result<Outline> {
         geo_json(text, Path::new("path.geojson"))
-    }
-
-    /// A shapefile of one line through these places.
-    fn shapefile(places: &[Place]) -> Vec<u8> {
-        let points = places.iter().map(|p| shapefile::Point::new(p.0, p.1));
-        let line = shapefile::Polyline::new(points.collect());
-        let mut out = Cursor::new(Vec::new());
-        let writer = shapefile::ShapeWriter::new(&mut out);
-        writer.write_shapes(&[line]).unwrap();
-        out.into_inner()
     }
 
     #[test]
@@ -177,10 +138,10 @@ mod tests {
         assert!(!json(text).unwrap().is_geographic);
         let places = [(79_400.5, 242_000.0), (79_400.5, 241_000.0)];
         let path = Path::new("path.shp");
-        let found = shapes(&shapefile(&places), None, path).unwrap();
+        let found = shapefile(&written(&[&places]), None, path).unwrap();
         assert_eq!((&found.places[..], found.count), (&places[..], 1));
         let degrees = Some("GEOGCS[\"WGS 84\"]");
-        let found = shapes(&shapefile(&places), degrees, path).unwrap();
+        let found = shapefile(&written(&[&places]), degrees, path).unwrap();
         assert!(found.is_geographic);
     }
 
@@ -203,15 +164,15 @@ mod tests {
 
     #[test]
     fn no_bytes_of_a_shapefile_end_in_a_panic() {
-        let good = shapefile(&[(0.0, 0.0), (3.0, 4.0), (5.0, 6.0)]);
+        let good = written(&[&[(0.0, 0.0), (3.0, 4.0), (5.0, 6.0)]]);
         let path = Path::new("path.shp");
         for at in 0..good.len() {
             for value in [0, 1, 0x7f, 0x80, 0xff] {
                 let mut bytes = good.clone();
                 bytes[at] = value;
-                let _ = shapes(&bytes, None, path);
+                let _ = shapefile(&bytes, None, path);
             }
-            let _ = shapes(&good[..at], None, path);
+            let _ = shapefile(&good[..at], None, path);
         }
     }
 }

@@ -52,7 +52,7 @@ pub(super) fn path(path: &Path) -> Result<Outline> {
             let beside = path.with_extension("prj");
             let prj = beside.is_file().then(|| read_any_text(&beside));
             let prj = prj.transpose()?;
-            outline::shapes(&read_bytes(path)?, prj.as_deref(), path)
+            outline::shapefile(&read_bytes(path)?, prj.as_deref(), path)
         }
         "json" | "geojson" => outline::geo_json(&read_any_text(path)?, path),
         other => Err(Error::input(format!(

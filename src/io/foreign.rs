@@ -8,7 +8,7 @@ use super::words::place;
 use crate::error::{Error, Result};
 
 /// The most bytes of such a file: a day's log at 20 Hz, a terrain model of
-/// 40 million cells.
+/// some ten million cells.
 const MOST: u64 = 1 << 29;
 
 /// The bytes of a file.

@@ -242,7 +242,8 @@ fn canonical(path: &Path) -> Result<PathBuf> {
 fn remove(folder: &Path, name: &str) -> Result<()> {
     let path = folder.join(name);
     match fs::remove_file(&path) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+        // It may be gone, or may never have been: its name is too long.
+        Err(error) if path.symlink_metadata().is_ok() => {
             return Err(Error::system(format!(
                 "{}: an earlier run's file could not be removed: {error}",
                 place(&path)

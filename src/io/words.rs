@@ -2,28 +2,11 @@
 
 use std::path::Path;
 
-/// The longest piece of foreign text in a message, in characters.
-const LONGEST: usize = 60;
+pub(crate) use crate::spelling::{breaks_line, quoted};
 
 /// The largest number, either way, that a file may give: further from
 /// anything that slides than any slip of units, and safe to square.
 pub(super) const LARGEST: f64 = 1e9;
-
-/// Foreign text in quotes, its control characters escaped and its end cut.
-pub(crate) fn quoted(text: &str) -> String {
-    match text.char_indices().nth(LONGEST) {
-        None => format!("{text:?}"),
-        Some((end, _)) => format!("{:?}...", &text[..end]),
-    }
-}
-
-/// Whether a character would break or turn a line of a message: controls,
-/// line separators, and marks without a width or of a writing direction.
-pub(super) fn breaks_line(c: char) -> bool {
-    c.is_control()
-        || matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
-            | '\u{2060}'..='\u{2069}' | '\u{feff}')
-}
 
 /// A path as the user gave it, unless that would break the line.
 pub(crate) fn place(path: &Path) -> String {
@@ -58,10 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn foreign_text_stays_on_one_line_and_short() {
-        assert_eq!(quoted("a\nb\u{1b}[2J"), r#""a\nb\u{1b}[2J""#);
-        let long = quoted(&"é".repeat(500));
-        assert_eq!(long.chars().count(), LONGEST + 5);
+    fn a_path_stays_on_one_line() {
         assert_eq!(place(Path::new("a/b c")), "a/b c");
         assert_eq!(place(Path::new("a\nb")), r#""a\nb""#);
     }

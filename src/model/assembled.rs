@@ -20,6 +20,7 @@ use crate::physics::friction::LawSum;
 use crate::physics::{Rest, State};
 use crate::prior::AnyPrior;
 use crate::scalar::{Plain, Real};
+use crate::spelling::quoted;
 
 /// One event under a sum of named laws with a named noise, and under the
 /// changes of mechanisms where there are some.
@@ -151,9 +152,10 @@ impl Assembled {
             Some(key) => {
                 let names: Vec<_> =
                     self.unknowns().map(|u| u.name.as_str()).collect();
+                let key = quoted(key);
                 Err(Error::input(format!(
-                    "priors.{key}: the model has no parameter {key:?}; it \
-                     has {}",
+                    "priors.{}: the model has no parameter {key}; it has {}",
+                    key.trim_matches('"'),
                     names.join(", ")
                 )))
             }

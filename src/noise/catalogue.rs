@@ -11,7 +11,7 @@ use super::{
 use crate::block::{Block, Field};
 use crate::error::{Error, Stop};
 use crate::scalar::{Kind, Real};
-use crate::spelling::nearest;
+use crate::spelling::{nearest, quoted};
 
 /// The longest list a noise may have: an order above says that the residuals
 /// are not noise, and costs in the order cubed where values are missing.
@@ -225,8 +225,10 @@ fn summed(text: &str) -> crate::Result<Box<dyn NoiseEntry>> {
         let (noise, entry) = block(term)?;
         return match noise.role {
             Role::Summand => Err(Error::input(format!(
-                "\"{term}\" shapes errors that another block makes; write it \
-                 beside one, as in \"white + {term}\""
+                "{} shapes errors that another block makes; write it beside \
+                 one, as in \"white + {}\"",
+                quoted(term),
+                noise.name
             ))),
             _ => Ok(entry),
         };
@@ -253,8 +255,8 @@ fn summed(text: &str) -> crate::Result<Box<dyn NoiseEntry>> {
     }
     if known.iter().all(|noise| noise.role == Role::Summand) {
         return Err(Error::input(format!(
-            "\"{text}\" shapes errors that no block makes; add one, such as \
-             white"
+            "{} shapes errors that no block makes; add one, such as white",
+            quoted(text)
         )));
     }
     Ok(Box::new(SumEntry(parts)))
@@ -275,8 +277,9 @@ fn block(text: &str) -> crate::Result<(&'static Listed, Box<dyn NoiseEntry>)> {
             Some(argument) => (name.trim_end(), Some(argument.trim())),
             None => {
                 return Err(Error::input(format!(
-                    "\"{text}\" opens a bracket and does not close it; write \
-                     it as in \"ar(2)\""
+                    "{} opens a bracket and does not close it; write it as \
+                     in \"ar(2)\"",
+                    quoted(text)
                 )));
             }
         },
@@ -293,7 +296,8 @@ fn length(noise: &Listed, argument: Option<&str>) -> crate::Result<usize> {
     match (noise.has_list(), argument) {
         (false, None) => Ok(0),
         (false, Some(found)) => Err(Error::input(format!(
-            "\"{name}\" takes no argument, and has ({found}); write \"{name}\""
+            "\"{name}\" takes no argument, and has {}; write \"{name}\"",
+            quoted(found)
         ))),
         (true, None) => Err(Error::input(format!(
             "\"{name}\" needs its order; write \"{name}(1)\" for the first"
@@ -302,8 +306,8 @@ fn length(noise: &Listed, argument: Option<&str>) -> crate::Result<usize> {
             Ok(k @ 1..=LONGEST) => Ok(k),
             _ => Err(Error::input(format!(
                 "the order of \"{name}\" is a whole number from 1 to \
-                 {LONGEST}, and \"{found}\" is none; write \"{name}(1)\" for \
-                 the first"
+                 {LONGEST}, and {} is none; write \"{name}(1)\" for the first",
+                quoted(found)
             ))),
         },
     }
@@ -317,7 +321,8 @@ fn unknown(found: &str) -> Error {
         format!("; did you mean \"{}\"?", n.pattern())
     });
     Error::input(format!(
-        "there is no noise \"{found}\", there are {}{mend}",
+        "there is no noise {}, there are {}{mend}",
+        quoted(found),
         names().join(", ")
     ))
 }
@@ -360,7 +365,7 @@ mod tests {
             ("ar(21)", "from 1 to 20, and \"21\" is none"),
             ("ar(-1)", "\"-1\" is none"),
             ("ar(2", "does not close it"),
-            ("iid(3)", "takes no argument, and has (3)"),
+            ("iid(3)", "takes no argument, and has \"3\""),
             ("", "there is no noise \"\""),
             ("something", "there are iid, student, ar(k)"),
             ("tails", "as in \"white + tails\""),

@@ -135,9 +135,11 @@ pub(super) fn normal_score(deviate: f64, dof: f64) -> f64 {
         let shrunk = deviate * (1.0 - 0.25 / dof);
         return shrunk / (1.0 + 0.5 * deviate * deviate / dof).sqrt();
     }
-    let Ok(law) = StudentsT::new(0.0, 1.0, dof) else {
-        return f64::NAN;
-    };
+    // What is no number has no distribution function, and half of the
+    // smallest numbers is 0.
+    let is_number = !deviate.is_nan() && dof.is_normal();
+    let law = StudentsT::new(0.0, 1.0, dof).ok().filter(|_| is_number);
+    let Some(law) = law else { return f64::NAN };
     // In the lower tail, where a small probability is exact.
     let tail = law.cdf(-deviate.abs()).max(f64::MIN_POSITIVE);
     let z = Normal::standard().inverse_cdf(tail.min(0.5));

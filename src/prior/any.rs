@@ -10,6 +10,7 @@ use super::{
 use crate::error::{Error, Result};
 use crate::scalar::{Kind, Plain, Real};
 use crate::seed::Rng;
+use crate::spelling::quoted;
 
 /// What an argument has to be.
 #[derive(Debug, Clone, Copy)]
@@ -19,6 +20,10 @@ enum Need {
     /// Above the first argument, by a finite number.
     AboveFirst,
 }
+
+/// The largest size of an argument, and one by the smallest: far beyond what
+/// anybody knows of a slope, and small enough for densities to be numbers.
+const LARGEST: f64 = 1e15;
 
 /// A distribution as texts know it.
 struct Family {
@@ -173,7 +178,7 @@ impl AnyPrior {
     /// ```
     pub fn parse(text: &str) -> Result<Self> {
         read(text).map_err(|e| {
-            e.within(format_args!("prior \"{text}\""))
+            e.within(format_args!("prior {}", quoted(text)))
                 .on_page("reference/priors")
         })
     }
@@ -220,8 +225,9 @@ impl Family {
             .map(|(text, (argument, _))| {
                 text.parse().map_err(|_| {
                     Error::input(format!(
-                        "{argument} of {} is \"{text}\", expected a number",
-                        self.form()
+                        "{argument} of {} is {}, expected a number",
+                        self.form(),
+                        quoted(text)
                     ))
                 })
             })
@@ -242,6 +248,17 @@ impl Family {
 
     /// An error unless `values` are possible arguments.
     fn check(&self, values: &[f64]) -> Result<()> {
+        let is_wild = |x: &&f64| {
+            x.abs() > LARGEST || (**x != 0.0 && x.abs() < 1.0 / LARGEST)
+        };
+        if let Some(wild) = values.iter().find(is_wild) {
+            return Err(Error::input(format!(
+                "an argument of {} is {wild:e}, expected 0, or a size from \
+                 {:e} to {LARGEST:e}",
+                self.form(),
+                1.0 / LARGEST
+            )));
+        }
         for (&value, &(name, need)) in values.iter().zip(self.arguments) {
             let (met, expected) = match need {
                 Need::Finite => (value.is_finite(), "a finite number".into()),
@@ -302,12 +319,13 @@ fn unknown(name: &str) -> Error {
     let names: Vec<_> = NAMES.iter().map(|n| n.0).collect();
     let nearest = names
         .iter()
+        // A word much longer than any name is none of them misspelt.
+        .filter(|known| name.len() <= 4 * known.len())
         .min_by_key(|known| distance(name, known))
-        .map(|n| format!("; did you mean \"{n}\"?"))
-        .unwrap_or_default();
+        .map_or(".".to_owned(), |n| format!("; did you mean \"{n}\"?"));
     Error::input(format!(
-        "there is no distribution \"{name}\"{nearest} The distributions \
-         are {}",
+        "there is no distribution {}{nearest} The distributions are {}",
+        quoted(name),
         names.join(", ")
     ))
 }

@@ -142,7 +142,8 @@ fn quantile_of<K: Kind>(
     } else if p == 1.0 {
         Some(high)
     } else if p > 0.0 && p < 1.0 {
-        Some(support.nearest(inside(p)))
+        // Where its formula overflows, nobody knows it.
+        Some(support.nearest(inside(p))).filter(|x| !x.is_nan())
     } else {
         None
     }

@@ -4,6 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use crate::error::{Error, Result};
+use crate::spelling::quoted;
 
 /// Part `number` of `of`, counted from 1: every `of`-th event of the list.
 ///
@@ -47,7 +48,8 @@ impl FromStr for Shard {
     fn from_str(text: &str) -> Result<Self> {
         let wrong = || {
             Error::input(format!(
-                "{text:?}: expected I/N with I from 1 to N, such as 3/100"
+                "{}: expected I/N with I from 1 to N, such as 3/100",
+                quoted(text)
             ))
         };
         let (number, of) = text.split_once('/').ok_or_else(wrong)?;

@@ -15,7 +15,7 @@ use super::limits::{Take, Tally, Watched};
 use super::targets::{data, imports, results, words};
 
 /// How many inputs there are in all every day.
-const INPUTS: u64 = 40_000;
+const INPUTS: u64 = 150_000;
 
 /// The shares of all targets together.
 const SHARES: u64 = 1000;

@@ -10,7 +10,7 @@ use super::{Friction, Rate, Site, Varies};
 use crate::block::{Field, Named};
 use crate::error::{Error, Result};
 use crate::scalar::{Grad, Kind, Plain, Real, Reverse};
-use crate::spelling::nearest;
+use crate::spelling::{nearest, quoted};
 
 /// A law whose parameters are given as a slice.
 pub trait RateOf<K: Kind> {
@@ -145,8 +145,9 @@ impl Laws {
             let mend = nearest(name, &known)
                 .map(|known| format!("; did you mean {known:?}?"));
             Error::input(format!(
-                "friction {name:?} is not known; expected none, or one or a \
-                 sum (\"a + b\") of {}{}",
+                "friction {} is not known; expected none, or one or a sum \
+                 (\"a + b\") of {}{}",
+                quoted(name),
                 known.join(", "),
                 mend.unwrap_or_default()
             ))

@@ -59,6 +59,7 @@ impl<'f> Files<'f> {
 fn asked(file: EventFile) -> Result<(), Error> {
     let EventFile { event, friction, noise, priors, .. } = file;
     let model = Assembled::new(event, friction, noise, &priors)?;
+    model.check_priors(&priors)?;
     let posterior = Posterior::new(&model)?;
     let mut rng = Seed::new(7).rng();
     if posterior.is_proper() {

@@ -55,9 +55,9 @@ pub(crate) fn columns(folder: &Path, input: &[u8]) -> Result<(), Error> {
 pub(crate) fn moment(folder: &Path, input: &[u8]) -> Result<(), Error> {
     let mut options = degrees(folder);
     options.from = Some(text(input)?.to_owned());
-    take(&options)?;
+    let begun = take(&options);
     (options.from, options.to) = (None, options.from);
-    take(&options)
+    begun.and(take(&options))
 }
 
 pub(crate) fn crs(folder: &Path, input: &[u8]) -> Result<(), Error> {
