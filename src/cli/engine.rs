@@ -10,7 +10,7 @@ use clap::ValueEnum;
 use super::answer::{quoted_word, wrapped};
 use super::width;
 use crate::error::{Error, Result};
-use crate::io::write_all;
+use crate::io::{place, write_all};
 
 /// A scheduler.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -44,7 +44,7 @@ impl Engine {
         let text = format!(
             "Submitted {shards} shards by {}: {}. When they have ended, run \
              the same without --engine for the summary.",
-            path.display(),
+            place(&path),
             told.trim()
         );
         Ok(wrapped(&text, width()))

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::answer::Answer;
+use super::answer::{Answer, quoted_word};
 use super::made::Made;
 use super::results::{Results, folder};
 use super::width;
@@ -133,12 +133,13 @@ fn told(one: &Imported, width: usize) -> String {
     text
 }
 
-/// The command to go on with.
+/// The command to go on with, as a shell takes it.
 fn next(out: &Path, folders: &[String]) -> String {
+    let word = |path: &Path| quoted_word(&path.to_string_lossy());
     if folders.is_empty() {
-        return format!("\n    couloir calibrate {}\n", out.display());
+        return format!("\n    couloir calibrate {}\n", word(out));
     }
-    let all = folders.iter().map(|name| out.join(name).display().to_string());
+    let all = folders.iter().map(|name| word(&out.join(name)));
     let all: Vec<_> = all.collect();
     format!("\n    couloir diagnose {} --one-law\n", all.join(" "))
 }

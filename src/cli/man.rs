@@ -8,7 +8,7 @@ use clap_mangen::Man;
 use super::answer::Answer;
 use super::results::folder;
 use crate::error::{Error, Result};
-use crate::io::write_all;
+use crate::io::{place, write_all};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -30,7 +30,7 @@ impl Arguments {
         write_all(folder, &pages).map_err(|error| error.within("--out"))?;
         let names: Vec<&str> =
             pages.iter().map(|(name, _)| name.as_str()).collect();
-        let (names, folder) = (names.join(", "), folder.display());
+        let (names, folder) = (names.join(", "), place(folder));
         Ok(format!("Written to {folder}: {names}\n").into())
     }
 }

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::answer::quoted_word;
 use crate::error::Result;
-use crate::io::new_event;
+use crate::io::{new_event, place};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -17,12 +18,12 @@ impl Arguments {
     pub(super) fn run(&self) -> Result<String> {
         let mut text = String::new();
         for path in new_event(&self.folder)? {
-            text.push_str(&format!("wrote {}\n", path.display()));
+            text.push_str(&format!("wrote {}\n", place(&path)));
         }
         text.push_str(&format!(
             "\nThe numbers are synthetic. Put your own in, then:\n\n    \
              couloir calibrate {}\n",
-            self.folder.display()
+            quoted_word(&self.folder.to_string_lossy())
         ));
         Ok(text)
     }

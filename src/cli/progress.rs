@@ -6,7 +6,7 @@ use std::sync::Mutex;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::screen::complain;
+use super::screen::{complain, shown};
 use crate::infer::Progress;
 
 /// Tells on the standard error stream how far an inference has come.
@@ -85,7 +85,7 @@ impl Progress for Told {
             if let Ok(style) = ProgressStyle::with_template(form) {
                 fresh.set_style(style.progress_chars("=> "));
             }
-            fresh.set_message(what.to_owned());
+            fresh.set_message(shown(what));
             *bar = fresh;
         });
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::error::Result;
-use crate::io::{Content, prepare_run, write_run, write_run_of};
+use crate::io::{Content, place, prepare_run, write_run, write_run_of};
 
 /// A folder that results can go to, looked at before the work and not after.
 pub(super) fn folder(text: &str) -> std::result::Result<PathBuf, String> {
@@ -15,7 +15,7 @@ pub(super) fn folder(text: &str) -> std::result::Result<PathBuf, String> {
         Some(there) if !there.is_dir() => Err(format!(
             "{} is a file; expected a folder, or a name that is free: give \
              another, or move the file away",
-            there.display()
+            place(there)
         )),
         _ => Ok(path),
     }
@@ -100,7 +100,7 @@ impl<'a> Results<'a> {
             return String::new();
         };
         let (head, files) =
-            (format!("Written to {}:", folder.display()), files.join(", "));
+            (format!("Written to {}:", place(folder)), files.join(", "));
         let both = head.chars().count() + 1 + files.chars().count();
         let between = if both > width { "\n  " } else { " " };
         format!("\n{head}{between}{files}\n")

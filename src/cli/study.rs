@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::Subject;
 use super::said::Said;
 use crate::error::{Error, Result};
-use crate::io::{self, EventFile};
+use crate::io::{self, EventFile, place};
 use crate::mechanism::catalogue::find;
 use crate::model::{Assembled, Program};
 use crate::noise::{self, is_inferred, stand_in};
@@ -43,9 +43,9 @@ impl Subject {
             Some(path) => io::load(path, laws)?,
             None => io::coastdown(laws)?,
         };
-        let place = file.path.display();
+        let at = place(&file.path);
         let thin = self.thin.apply(&file.event);
-        let (event, said) = thin.map_err(|e| e.within(place))?;
+        let (event, said) = thin.map_err(|e| e.within(at))?;
         file.event = event;
         Ok((file, said))
     }
@@ -65,7 +65,7 @@ impl Subject {
     pub(super) fn read(&self, laws: &Laws) -> Result<Read> {
         let (file, thinned) = self.load_told(laws)?;
         let own = self.friction.is_none() && self.noise.is_none();
-        let place = file.path.display().to_string();
+        let place = place(&file.path);
         let friction = self.friction.clone();
         let noise = self.noise_of(&file.event);
         let infers_noise = match &self.noise {
@@ -175,7 +175,7 @@ pub(super) fn assemble(
         Some(text) => noise::parse(&text).map_err(|e| e.within("--noise"))?,
         None => file.noise,
     };
-    let place = file.path.display().to_string();
+    let place = place(&file.path);
     if file.event.recordings().next().is_none() {
         return Err(Error::input("the event has no recording").within(place));
     }

@@ -17,6 +17,7 @@ use super::progress::Told;
 use super::results::{Results, folder};
 use crate::error::{Error, Result};
 use crate::infer::Progress as _;
+use crate::io::place;
 use crate::physics::friction::Laws;
 #[cfg(feature = "export")]
 use crate::sweep::write_parquet;
@@ -205,7 +206,7 @@ impl Arguments {
     fn words_of_a_shard(&self) -> Result<[Vec<OsString>; 2]> {
         let absolute = |path: &Path| {
             std::path::absolute(path).map(PathBuf::into_os_string).map_err(
-                |error| Error::system(format!("{}: {error}", path.display())),
+                |error| Error::system(format!("{}: {error}", place(path))),
             )
         };
         let verb = format!("--verb={}", self.verb.name()).into();

@@ -7,7 +7,7 @@ use toml_edit::{Array, DocumentMut, Item, TableLike, Value, table};
 
 use super::embedded;
 use super::event_file::{MOST_BYTES, find};
-use super::source::read_text;
+use super::source::{read_data, read_text};
 use super::words::place;
 use crate::error::{Error, Result};
 use crate::observe::Series;
@@ -66,7 +66,7 @@ pub fn corrected(
         data.retain(|(name, _)| *name != RECORDING);
     }
     for (name, from) in data {
-        files.push((name, read_text(&folder.join(from), u64::MAX - 1)?));
+        files.push((name, read_data(&folder.join(from))?));
     }
     Ok(files)
 }

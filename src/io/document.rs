@@ -271,10 +271,14 @@ fn syntax(text: &str, path: &Path, error: &toml::de::Error) -> Error {
         .take(200)
         .collect();
     let found = text.lines().nth(line - 1).unwrap_or("").trim();
+    // A link may lead to any file of the machine.
+    let found = match path.is_symlink() {
+        true => "another line".to_owned(),
+        false => quoted(found),
+    };
     Error::input(format!(
-        "{}:{line}: is not TOML: {what}; found {}; expected lines such as \
-         depth = 1.5, name = \"text\" or [track]",
-        place(path),
-        quoted(found)
+        "{}:{line}: is not TOML: {what}; found {found}; expected lines such \
+         as depth = 1.5, name = \"text\" or [track]",
+        place(path)
     ))
 }

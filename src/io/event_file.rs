@@ -3,12 +3,13 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::Read;
+use std::io::{Read, Take};
 use std::path::{Path, PathBuf};
 
 use super::csv_file::{depth_of, recording_of, track_of};
 use super::document::{Document, Section};
 use super::doubtful::{doubts, slope_in_radians, would_fit};
+use super::outside::Outside;
 use super::source;
 use super::words::{either, place, quoted};
 use crate::error::{Error, Result, Stop};
@@ -73,12 +74,15 @@ fn read(path: &Path, laws: &Laws) -> Result<EventFile> {
     let file = find(path)?;
     let text = source::read_text(&file, MOST_BYTES)?;
     let folder = file.parent().unwrap_or(Path::new(""));
+    let outside = Outside::of(folder);
     let open = |name: &str| {
         let path = folder.join(name);
-        let file = source::open(&path)?;
+        let file = source::open_data(&path)?;
+        outside.note(&path);
         Ok((file, path))
     };
-    parse_event::<File>(&text, &file, open, laws)
+    parse_event::<Take<File>>(&text, &file, open, laws)
+        .map_err(|error| outside.kept_to_itself(error))
 }
 
 /// The event.toml that a path given by the user means.

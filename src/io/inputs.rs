@@ -10,7 +10,7 @@ use toml_edit::Item;
 use super::corrected::{FILES, editable};
 use super::embedded;
 use super::event_file::{MOST_BYTES, find};
-use super::source::read_text;
+use super::source::{read_data, read_text};
 use crate::error::Result;
 
 /// The files of an event by their names, each with its SHA-256: event.toml
@@ -38,7 +38,7 @@ pub(crate) fn inputs(
         BTreeMap::from([(called.into_owned(), sha256(text.as_bytes()))]);
     let folder = file.parent().unwrap_or(Path::new(""));
     for name in named(&text, &file)? {
-        let data = read_text(&folder.join(&name), u64::MAX - 1)?;
+        let data = read_data(&folder.join(&name))?;
         all.insert(name, sha256(data.as_bytes()));
     }
     Ok(all)

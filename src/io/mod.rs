@@ -15,6 +15,7 @@ mod foreign;
 #[cfg(feature = "cli")]
 mod inputs;
 mod lines;
+mod outside;
 mod plausible;
 #[cfg(feature = "cli")]
 mod run_folder;

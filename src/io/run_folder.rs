@@ -129,7 +129,11 @@ fn read_list(folder: &Path) -> Result<Listed> {
     if path.symlink_metadata().is_err() {
         return Ok(Listed::new());
     }
-    let text = fs::read_to_string(&path).unwrap_or_default();
+    // A pipe would keep a reader waiting.
+    let text = match path.is_file() {
+        true => fs::read_to_string(&path).unwrap_or_default(),
+        false => return Err(in_the_way(&path)),
+    };
     let mut lines = text.lines();
     let known = lines.next() == Some(HEAD);
     let mut listed = Listed::new();
@@ -193,15 +197,16 @@ fn refuse_other(path: &Path, name: &str, listed: &Listed) -> Result<()> {
     if path.symlink_metadata().is_err() {
         return Ok(());
     }
-    let bytes = fs::read(path);
+    let about = path.metadata().ok().filter(fs::Metadata::is_file);
+    let about = about.ok_or_else(|| in_the_way(path))?;
     // A file that is empty holds nothing to lose: a shell makes one of
     // `--json > DIR/diagnosis.json` before the run begins.
-    if bytes.as_ref().is_ok_and(Vec::is_empty) {
+    if about.len() == 0 {
         return Ok(());
     }
-    let known = listed.get(name);
-    match (bytes, known) {
-        (Ok(bytes), Some(known)) if known.contains(&sha256(&bytes)) => Ok(()),
+    let Some(known) = listed.get(name) else { return Err(in_the_way(path)) };
+    match fs::read(path) {
+        Ok(bytes) if known.contains(&sha256(&bytes)) => Ok(()),
         _ => Err(in_the_way(path)),
     }
 }

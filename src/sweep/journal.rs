@@ -50,6 +50,9 @@ impl Outcome {
     }
 }
 
+/// The longest line that is read, in bytes; couloir writes some thousands.
+const LONGEST: u64 = 1 << 26;
+
 /// How many digits of a line's SHA-256 stand before it.
 const CHECK: usize = 16;
 
@@ -206,7 +209,8 @@ impl Index {
         let mut paths = Vec::new();
         for entry in fs::read_dir(&self.folder).map_err(unread)? {
             let path = entry.map_err(unread)?.path();
-            if path.extension().is_some_and(|e| e == ENDING) {
+            let is_journal = path.extension().is_some_and(|e| e == ENDING);
+            if is_journal && path.is_file() {
                 paths.push(path);
             }
         }
@@ -239,7 +243,8 @@ impl Index {
         let mut line = Vec::new();
         loop {
             line.clear();
-            let length = lines.read_until(b'\n', &mut line).map_err(wrong)?;
+            let mut short = lines.by_ref().take(LONGEST);
+            let length = short.read_until(b'\n', &mut line).map_err(wrong)?;
             if line.pop() != Some(b'\n') {
                 return Ok(());
             }

@@ -5,12 +5,27 @@
 //! Rows go by one at a time, and are not held.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use serde_json::{Value, json};
 
+<<<<<<< HEAD
 use super::row::{Columns, Row, mechanisms, texts};
 use crate::draws::quantile;
 use crate::report::digits::short;
+=======
+use super::journal::Outcome;
+use crate::io::place;
+
+/// An event of a sweep, and what came of it.
+#[derive(Debug, Clone)]
+pub struct Row {
+    /// What it is called: its path, with the options of its line.
+    pub event: String,
+    /// Nothing yet, a result or a failure.
+    pub outcome: Option<Outcome>,
+}
+>>>>>>> 057b5be (Hostile names and places: terminals, files elsewhere, devices, pipes)
 
 /// How often something was seen.
 #[derive(Debug, Clone, Copy, Default)]
@@ -190,7 +205,8 @@ impl Summary {
             let first = events.first().map_or("", String::as_str);
             let count = events.len();
             text.push_str(&format!(
-                "\n{count} failed, {first} first: {why}\n"
+                "\n{count} failed, {} first: {why}\n",
+                place(Path::new(first))
             ));
         }
         text

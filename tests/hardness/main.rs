@@ -8,6 +8,9 @@
 #![allow(clippy::panic, reason = "a test fails by it")]
 
 mod changes;
+mod command;
 mod limits;
+mod names;
 mod parsers;
+mod places;
 mod targets;
