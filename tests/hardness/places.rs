@@ -25,7 +25,7 @@ fn refused(folder: &Path, part: &str) {
     assert_eq!(output.status.code(), Some(2), "{text}");
     assert!(text.contains(part), "{part}: {text}");
     assert!(!text.contains("hunter2") && !text.contains("secret:/"), "{text}");
-    let out = fresh("places-swept");
+    let out = folder.with_extension("swept");
     let words = ["sweep", "--verb=calibrate", "-q", "--out"];
     let paths = [out.to_str().unwrap(), folder.to_str().unwrap()];
     let output = couloir(&[&words[..], &paths].concat());

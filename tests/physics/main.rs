@@ -8,6 +8,7 @@ mod energy;
 mod exact_motion;
 mod gradients;
 mod mechanisms;
+mod random_blocks;
 mod reverse;
 mod terrain;
 mod track;

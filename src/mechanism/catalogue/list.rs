@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::built_in;
 use crate::error::{Error, Result};
 use crate::mechanism::{Candidate, Extent, Mechanism, Role};
+use crate::spelling::quoted;
 
 /// Makes a mechanism whose priors suit an event.
 type Maker = Arc<dyn Fn(&Extent) -> Box<dyn Mechanism> + Send + Sync>;
@@ -118,8 +119,8 @@ impl Catalogue {
             Some(_) => "has nothing to act on in this event",
         };
         Err(Error::input(format!(
-            "{label:?} {why}; expected one of {}: take one of them, or drop \
-             it",
+            "{} {why}; expected one of {}: take one of them, or drop it",
+            quoted(label),
             labels.join(", ")
         )))
     }
