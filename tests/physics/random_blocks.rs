@@ -70,9 +70,10 @@ fn blocks() -> impl Strategy<Value = Blocks> {
 fn event(seed: u64) -> Event {
     let mut rng = Seed::new(seed).rng();
     let track = any_track(&mut rng);
-    let start = rng.random_range(0.5..40.0);
+    // The track has room for what was recorded.
+    let start = rng.random_range(0.5..40.0_f64).min(0.03 * track.length());
     let times: Vec<f64> = (1..=24).map(|i| STEP * f64::from(i)).collect();
-    let speeds = times.iter().map(|t| start * (1.0 + (0.7 * t).sin()) + 0.1);
+    let speeds = times.iter().map(|t| start * (1.05 + (0.7 * t).sin()));
     let speeds = speeds.collect();
     Event::on(track)
         .release(0.0, start)
