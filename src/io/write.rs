@@ -97,19 +97,13 @@ fn draft(target: PathBuf, content: &Content<'_>) -> Result<Draft> {
     let name = target.file_name().unwrap_or_default().to_string_lossy();
     let hidden = format!(".{name}.{}.tmp", std::process::id());
     let draft = Draft { temporary: folder.join(hidden), target };
-<<<<<<< HEAD
-    let written = File::create(&draft.temporary).and_then(|file| {
-        let mut file = BufWriter::new(file);
-        content(&mut file)?;
-        file.into_inner()?.sync_all()
-=======
     // What an earlier process of this number left, or a link that somebody
     // put there, is not written through.
     let _ = fs::remove_file(&draft.temporary);
-    let written = File::create_new(&draft.temporary).and_then(|mut file| {
-        file.write_all(bytes)?;
-        file.sync_all()
->>>>>>> 057b5be (Hostile names and places: terminals, files elsewhere, devices, pipes)
+    let written = File::create_new(&draft.temporary).and_then(|file| {
+        let mut file = BufWriter::new(file);
+        content(&mut file)?;
+        file.into_inner()?.sync_all()
     });
     match written {
         Ok(()) => Ok(draft),

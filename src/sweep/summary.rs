@@ -9,23 +9,10 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-<<<<<<< HEAD
 use super::row::{Columns, Row, mechanisms, texts};
 use crate::draws::quantile;
-use crate::report::digits::short;
-=======
-use super::journal::Outcome;
 use crate::io::place;
-
-/// An event of a sweep, and what came of it.
-#[derive(Debug, Clone)]
-pub struct Row {
-    /// What it is called: its path, with the options of its line.
-    pub event: String,
-    /// Nothing yet, a result or a failure.
-    pub outcome: Option<Outcome>,
-}
->>>>>>> 057b5be (Hostile names and places: terminals, files elsewhere, devices, pipes)
+use crate::report::digits::short;
 
 /// How often something was seen.
 #[derive(Debug, Clone, Copy, Default)]

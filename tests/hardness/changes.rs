@@ -127,7 +127,7 @@ pub(crate) fn changed(corpus: Vec<Vec<u8>>) -> impl Strategy<Value = Input> {
 
 /// A place below `count` by a number of any size; 0 where there is none.
 fn at(number: u32, count: usize) -> usize {
-    (u64::from(number) * count as u64 >> 32) as usize
+    ((u64::from(number) * count as u64) >> 32) as usize
 }
 
 fn change_once(bytes: &mut Vec<u8>, change: &Change, corpus: &[Vec<u8>]) {

@@ -3,13 +3,17 @@
 
 use std::ffi::OsString;
 use std::fs;
+use std::io;
 use std::path::Path;
 
 use couloir::Error;
 use couloir::cli::{Made, made};
 use couloir::infer::Quiet;
 use couloir::physics::friction::Laws;
-use couloir::sweep::{Index, Key, Listed, Row, Summary, Task, listed};
+use couloir::sweep::{
+    Index, Key, Listed, Outcome, Row, Task, listed, page, summed, write_csv,
+    write_json,
+};
 use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 
@@ -35,7 +39,7 @@ fn key(folder: &Path) -> Result<Key, Error> {
     }
     let options = Vec::<OsString>::new();
     let listed = Listed { event, options: options.clone() };
-    Ok(Task::new("calibrate", &options, &listed)?.key)
+    Ok(Task::new("calibrate", &options, &[listed], 0)?.key)
 }
 
 /// Each line of the input is what came of a task; lines have the checksum
@@ -45,21 +49,38 @@ pub(crate) fn journal(folder: &Path, input: &[u8]) -> Result<(), Error> {
     let results = folder.join("results");
     fs::create_dir_all(&results).unwrap();
     let path = results.join("one.jsonl");
-    let mut summary = Summary::new("diagnose");
+    let mut outcomes = Vec::new();
     for line in input.split(|b| *b == b'\n').take(20) {
         let body = [key.to_string().as_bytes(), b" ", line].concat();
         let check = &digits(&body)[..16];
         let whole = [check.as_bytes(), b" ", &body, b"\n"].concat();
         fs::write(&path, whole).unwrap();
         // A line that is whole and is no outcome is a fault of the disk.
-        let outcome = Index::of(folder)?.outcome(&key).unwrap_or_default();
-        summary.add(&Row { event: "a".to_owned(), outcome });
+        outcomes.push(Index::of(folder)?.outcome(&key).unwrap_or_default());
     }
     fs::write(&path, input).unwrap();
     Index::of(folder)?.outcome(&key)?;
-    drop(summary.table());
-    let [json, _] = summary.into_files();
-    serde_json::from_str::<Value>(&json).unwrap();
+    summary_of(&outcomes)
+}
+
+/// Everything that is told of a sweep.
+fn summary_of(outcomes: &[Option<Outcome>]) -> Result<(), Error> {
+    let rows = |each: &mut dyn FnMut(&Row) -> io::Result<()>| {
+        for outcome in outcomes {
+            let (event, outcome) = ("a".to_owned(), outcome.clone());
+            let row = Row { event, task: None, outcome };
+            each(&row).map_err(|error| Error::system(error.to_string()))?;
+        }
+        Ok(())
+    };
+    let summary = summed("diagnose", &rows)?;
+    drop((summary.table(), page(&summary, &rows)?));
+    let [mut json, mut csv] = [Vec::new(), Vec::new()];
+    write_json(&summary, &rows, &mut json).unwrap();
+    write_csv(&summary, &rows, &mut csv).unwrap();
+    serde_json::from_slice::<Value>(&json).unwrap();
+    let lines = csv.iter().filter(|byte| **byte == b'\n').count();
+    assert!(lines > outcomes.len());
     Ok(())
 }
 
