@@ -199,7 +199,7 @@ fn put_digits(bytes: &mut Vec<u8>, place: u32, what: u32, size: u16) {
         _ => usize::from(size % 512),
     };
     let digit = char::from(b'0' + (what % 10) as u8).to_string();
-    let point = if what % 3 == 0 { "0." } else { "" };
+    let point = if what.is_multiple_of(3) { "0." } else { "" };
     put_number(bytes, place, &format!("{point}{}", digit.repeat(digits)));
 }
 
@@ -260,7 +260,7 @@ fn overwrite(bytes: &mut [u8], here: usize, what: u32) {
         0 => word.to_le_bytes(),
         _ => word.to_be_bytes(),
     };
-    let width = if what % 3 == 0 { 2 } else { 4 };
+    let width = if what.is_multiple_of(3) { 2 } else { 4 };
     let here = here & !1;
     for (byte, new) in bytes.iter_mut().skip(here).zip(&word[..width]) {
         *byte = *new;

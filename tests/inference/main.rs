@@ -3,6 +3,7 @@
 
 mod bands;
 mod evidence;
+mod population;
 mod reference;
 #[cfg(feature = "cli")]
 mod repeat;
