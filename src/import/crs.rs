@@ -88,6 +88,14 @@ impl Crs {
     }
 
     fn of(plane: &str, name: String) -> Result<Self> {
+        // proj4rs takes numbers apart byte by byte.
+        if !plane.is_ascii() {
+            return Err(Error::input(format!(
+                "--crs: {} has letters that no PROJ string has; expected \
+                 plain ones: type it again",
+                quoted(plane)
+            )));
+        }
         let parsed = Proj::from_proj_string(plane).map_err(|error| {
             Error::input(format!(
                 "--crs: {} cannot be used ({error}); expected a PROJ string \
@@ -220,6 +228,7 @@ mod tests {
             "+proj=utm +zone=99",
             "+",
             "+proj=tmerc +lat_0=x",
+            "+proj=lcc +lat_1=\u{feff}44",
         ] {
             let error = Crs::parse(text).map(|crs| crs.name).unwrap_err();
             assert!(error.to_string().starts_with("--crs: "), "{error}");

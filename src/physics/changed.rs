@@ -538,13 +538,21 @@ pub fn sample_changed<K: Kind, L: Friction<K>>(
     let mut walker = ChangedWalker::new(path, law, forces, release)?;
     for time in times {
         walker.advance_to(time.value())?;
-        visit(if speed_only {
+        let state = if speed_only {
             let zero = Real::new(0.0);
             let speed = walker.speed(time);
             State { speed, distance: zero, acceleration: zero }
         } else {
             walker.state(time)
-        });
+        };
+        // A force that drives the mass the more the faster it is may have
+        // taken it beyond every number, and back from the other side.
+        let is_motion =
+            state.speed.value() > -1e-6 && state.distance.value().is_finite();
+        if !is_motion {
+            return Err(Stop::Reject("the motion is not a finite number"));
+        }
+        visit(state);
     }
     Ok(())
 }

@@ -127,7 +127,8 @@ impl<K: Kind> Force<K> {
         let decay = (-2.0 * x).exp();
         let spread = (1.0 - decay) / c;
         let w = pace.w * decay + a * spread;
-        if w.value() <= 0.0 {
+        // Where c is negative both terms may be infinite: a mass that stops.
+        if w.value() <= 0.0 || w.value().is_nan() {
             return None;
         }
         let u = w.sqrt();
