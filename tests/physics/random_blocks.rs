@@ -106,11 +106,14 @@ fn model(of: &Blocks) -> Assembled {
     model.with_mechanisms(found, &none).unwrap()
 }
 
-/// Whether the motion is by the secant: a law of the speed with a change. Its
-/// error is of second order in the step.
+/// Whether the motion is by the secant: a law of the speed with a change, or a
+/// change that is one. Its error is of second order in the step.
 fn is_by_secant(of: &Blocks) -> bool {
-    let by_speed = |i: &usize| LAWS[*i].name() == "velocity-weakening";
-    !of.mechanisms.is_empty() && of.laws.iter().any(by_speed)
+    let is_bent =
+        |name: &str| ["velocity-weakening", "viscous-drag"].contains(&name);
+    let by_law = of.laws.iter().any(|i| is_bent(LAWS[*i].name()));
+    let labels = model(of).labels();
+    !labels.is_empty() && (by_law || labels.iter().any(|l| is_bent(l)))
 }
 
 /// Checks so many models; the first that fails is told, made as simple as it
