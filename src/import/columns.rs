@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use super::role::Role;
 use crate::error::{Error, Result};
-use crate::io::{either, quoted};
-use crate::spelling::nearest;
+use crate::io::either;
+use crate::spelling::{breaks_line, nearest, quoted};
 
 /// A column that a user named.
 #[derive(Debug, Clone, PartialEq)]
@@ -191,7 +191,7 @@ fn column(
         at,
         name: name.to_owned(),
         factor,
-        unit: taken.to_owned(),
+        unit: shown(taken),
         unit_is_known: unit.is_some(),
     })
 }
@@ -210,6 +210,13 @@ fn split(cell: &str) -> (String, Option<String>) {
         Some((name, unit)) => (name, Some(unit)),
         None => (cell.to_owned(), None),
     }
+}
+
+/// A unit as messages show it: where none is needed, a header may have
+/// anything in its place.
+fn shown(unit: &str) -> String {
+    let is_plain = unit.len() <= 20 && !unit.chars().any(breaks_line);
+    if is_plain { unit.to_owned() } else { quoted(unit) }
 }
 
 /// A name in small letters and digits alone.
