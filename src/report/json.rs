@@ -189,7 +189,7 @@ mod tests {
                 "warnings"
             ]
         );
-        assert_eq!(keys(&json["parameters"]["mu"]).len(), 13);
+        assert_eq!(keys(&json["parameters"]["mu"]).len(), 14);
         assert_eq!(keys(&json["checks"]).len(), 5);
         assert_eq!(keys(&json["log_evidence"]).len(), 3);
         assert_eq!(keys(&json["model"]), ["friction", "noise"]);
