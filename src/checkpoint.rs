@@ -12,7 +12,7 @@
 //! # let path = folder.join(format!("checkpoint-{}", std::process::id()));
 //! let first = Checkpoint::open(&path, "study of seed 1")?;
 //! let found = first.part("series 3", || Ok(vec![0.5, f64::NAN]))?;
-//! drop(first); // A kill would lose the last second.
+//! first.write(); // A kill would lose the last second.
 //! let again = Checkpoint::open(&path, "study of seed 1")?;
 //! let kept = again.part("series 3", || -> couloir::Result<Vec<f64>> {
 //!     unreachable!("it is kept")
@@ -174,6 +174,12 @@ impl Checkpoint {
         }
     }
 
+    /// Writes what waits to be written.
+    pub fn write(&self) {
+        let lock = self.growing.lock();
+        lock.unwrap_or_else(PoisonError::into_inner).write(&self.path);
+    }
+
     /// Removes it: the run has come to its end.
     pub fn remove(self) {
         let path = self.path.clone();
@@ -186,10 +192,13 @@ impl Checkpoint {
 }
 
 impl Drop for Checkpoint {
-    /// Writes what waits: the run was ended by an error.
+    /// Writes what waits, where the run that an error ended was a long one.
     fn drop(&mut self) {
         let growing = self.growing.get_mut();
-        growing.unwrap_or_else(PoisonError::into_inner).write(&self.path);
+        let growing = growing.unwrap_or_else(PoisonError::into_inner);
+        if growing.file.is_some() {
+            growing.write(&self.path);
+        }
     }
 }
 
@@ -218,6 +227,10 @@ impl Growing {
         self.waiting[..4].copy_from_slice(&head.0.to_le_bytes());
         self.waiting[4..CHECKED].copy_from_slice(&head.1.to_le_bytes());
         self.length = self.append(path, length).ok();
+        if self.length.is_none() {
+            // What room there is, is for the results.
+            let _ = fs::remove_file(path);
+        }
         self.waiting.truncate(CHECKED);
         self.since = Instant::now();
     }
@@ -324,7 +337,7 @@ mod tests {
         for (i, value) in values.iter().enumerate() {
             first.part(&format!("{i}"), || Ok(*value)).unwrap();
         }
-        drop(first);
+        first.write();
         let again = Checkpoint::open(&path, "a").unwrap();
         assert_eq!(again.parts(), values.len());
         for (i, value) in values.iter().enumerate() {
@@ -340,11 +353,11 @@ mod tests {
         let path = fresh("other");
         let first = Checkpoint::open(&path, "a").unwrap();
         first.part("1", || Ok(1.0)).unwrap();
-        drop(first);
+        first.write();
         let other = Checkpoint::open(&path, "b").unwrap();
         assert_eq!(kept(&other, "1"), None);
         other.part("1", || Ok(2.0)).unwrap();
-        drop(other);
+        other.write();
         assert_eq!(Checkpoint::open(&path, "a").unwrap().parts(), 0);
         let other = Checkpoint::open(&path, "b").unwrap();
         assert_eq!(kept(&other, "1"), Some(2.0));
@@ -361,6 +374,7 @@ mod tests {
             for part in 2 * block..2 * block + 2 {
                 one.part(&format!("{part}"), || Ok(f64::from(part))).unwrap();
             }
+            one.write();
         }
         let whole = fs::read(&path).unwrap();
         let each = (whole.len() - BEFORE) / 3;
@@ -387,7 +401,7 @@ mod tests {
         fs::write(&path, &whole[..whole.len() - 3]).unwrap();
         let torn = Checkpoint::open(&path, "a").unwrap();
         torn.part("7", || Ok(7.0)).unwrap();
-        drop(torn);
+        torn.write();
         let mended = Checkpoint::open(&path, "a").unwrap();
         assert_eq!((mended.parts(), kept(&mended, "7")), (5, Some(7.0)));
         mended.remove();
