@@ -20,7 +20,7 @@ from pathlib import Path
 
 RUNS = {
     "calibrate": (
-        ["calibrate", "--draws=900000", "--warmup=50000"],
+        ["calibrate", "--draws=300000", "--warmup=50000", "--format=csv"],
         "calibration.json",
     ),
     "challenge": (["challenge", "--cases=10", "--quick"], "challenge.json"),
