@@ -58,6 +58,7 @@ impl Hyper {
                 ))
                 .within(&member.name));
             }
+            member.check()?;
         }
         let scales: Vec<Scale> = (0..first.dimension())
             .map(|k| Scale::of(members, k))

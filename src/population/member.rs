@@ -29,12 +29,9 @@ pub(super) struct Weighed {
 }
 
 impl Member {
-    /// Puts a member's draws on the scale of the population: logarithms where
-    /// `in_log`.
-    ///
     /// # Errors
-    /// Too few draws, an improper prior, or a draw outside its prior.
-    pub(super) fn weighed(&self, in_log: &[bool]) -> Result<Weighed> {
+    /// Too few draws, or an improper prior.
+    pub(super) fn check(&self) -> Result<()> {
         let wrong = |what: String| Error::input(what).within(&self.name);
         if self.draws.total() < FEWEST {
             return Err(wrong(format!(
@@ -42,14 +39,22 @@ impl Member {
                 self.draws.total()
             )));
         }
-        let flat = self.priors.iter().position(|prior| !prior.is_proper());
-        if let Some(flat) = flat {
-            return Err(wrong(format!(
+        match self.priors.iter().position(|prior| !prior.is_proper()) {
+            Some(flat) => Err(wrong(format!(
                 "the prior of {} is improper; expected one that integrates \
                  to 1",
                 self.draws.names()[flat]
-            )));
+            ))),
+            None => Ok(()),
         }
+    }
+
+    /// Puts a member's draws on the scale of the population: logarithms where
+    /// `in_log`.
+    ///
+    /// # Errors
+    /// A draw outside its prior.
+    pub(super) fn weighed(&self, in_log: &[bool]) -> Result<Weighed> {
         let (mut places, mut base) = (Vec::new(), Vec::new());
         for row in self.draws.rows() {
             let mut density = 0.0;
@@ -63,10 +68,11 @@ impl Member {
                 places.push(place);
             }
             if !density.is_finite() {
-                return Err(wrong(format!(
+                return Err(Error::input(format!(
                     "the draw {row:?} has no density under the prior; \
                      expected draws of a calibration under this prior"
-                )));
+                ))
+                .within(&self.name));
             }
             base.push(-density);
         }
