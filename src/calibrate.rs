@@ -57,24 +57,35 @@ pub fn calibrate(
         Some(remembered) => Posterior::new(remembered)?,
         None => Posterior::new(model)?,
     };
+    calibrated(model, &posterior, backend, seed, progress)
+}
+
+/// The same of a posterior, whether what it costs is remembered or not.
+fn calibrated(
+    model: &Assembled,
+    posterior: &Posterior<'_>,
+    backend: &dyn Backend,
+    seed: u64,
+    progress: &dyn Progress,
+) -> Result<Calibration> {
     let root = Seed::new(seed);
-    let mut found = infer(backend, &posterior, root.child(0), progress)?;
+    let mut found = infer(backend, posterior, root.child(0), progress)?;
     let draws = draws_of(&found, backend)?;
     let summaries = summaries(&mut found, &draws);
     let median: Vec<f64> = summaries.iter().map(|s| s.q50).collect();
     let search = Map { starts: 4, from: vec![median.clone()] };
-    let mode = infer(&search, &posterior, root.child(1), progress)?.mode;
+    let mode = infer(&search, posterior, root.child(1), progress)?.mode;
     if found.evidence.is_none() && posterior.is_proper() {
         let seed = root.child(2);
-        add_evidence(&mut found, &posterior, &draws, seed, progress)?;
+        add_evidence(&mut found, posterior, &draws, seed, progress)?;
     }
     let simulations = posterior.cost().simulations;
     progress.begin("predicting", None);
     let series = recording(model)?;
     let (bands, statistics) =
-        posterior_checked(&posterior, &draws, series, root.child(3))?;
+        posterior_checked(posterior, &draws, series, root.child(3))?;
     let times = series.times();
-    let prior = prior_predictive(&posterior, 1000, times, root.child(4)).ok();
+    let prior = prior_predictive(posterior, 1000, times, root.child(4)).ok();
     let mut report = CalibrationReport {
         backend: backend.name().to_owned(),
         seed,
@@ -86,7 +97,7 @@ pub fn calibrate(
     };
     tell_run(&mut report, found, &draws);
     tell_recording(&mut report, series, bands);
-    check_fit(&mut report, &posterior, series, &median)?;
+    check_fit(&mut report, posterior, series, &median)?;
     report.checks.kolmogorov_smirnov_p = chains_alike(&draws);
     report.track = track(model, &median)?;
     Ok(Calibration { report, draws })

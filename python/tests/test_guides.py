@@ -51,6 +51,25 @@ class Guides(unittest.TestCase):
         self.assertTrue(Path("results/report.html").is_file())
 
 
+class SeveralRecordings(unittest.TestCase):
+    def test_each_is_an_event(self):
+        import couloir
+
+        rows = [f"{t},{0.5 * t * t},0,{100 - 0.3 * t * t}" for t in range(12)]
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ("a.csv", "b.csv"):
+                text = "\n".join(["t,x,y,z", *rows]) + "\n"
+                (Path(folder) / name).write_text(text)
+            both = couloir.import_log(
+                Path(folder) / "a.csv", front=Path(folder) / "b.csv"
+            )
+            both.save(Path(folder) / "events")
+            self.assertTrue((Path(folder) / "events/b/event.toml").is_file())
+        self.assertTrue(both.told.startswith("a/\n"))
+        names = [figure.name for figure in both.figures()]
+        self.assertEqual(names, ["a/import", "b/import"])
+
+
 class RecordedLog(unittest.TestCase):
     def test_it_goes_to_a_diagnosis(self):
         import couloir

@@ -101,6 +101,10 @@ CALLS = [
     (lambda: couloir.simulate(None, [0.3]), "--set"),
     (lambda: couloir.import_log("nowhere.csv"), "nowhere.csv"),
     (lambda: couloir.import_log(5), "log is 5"),
+    (lambda: couloir.import_log(), "avaframe"),
+    (lambda: couloir.import_log(particles="mean"), "particles is"),
+    (lambda: couloir.import_log(particles=["x"]), "--particle"),
+    (lambda: couloir.import_log(avaframe="nowhere"), "nowhere"),
 ]
 
 

@@ -53,7 +53,8 @@ Examples:
   couloir import --front front.csv --terrain dem.tif --path path.shp \\
     --out my-event
   couloir import sensor-1.csv sensor-2.csv --front front.csv \\
-    --terrain dem.tif --path path.shp --out my-events";
+    --terrain dem.tif --path path.shp --out my-events
+  couloir import --avaframe avaMine --particle mean --out my-event";
 
 pub(super) const BENCH: &str = "\
 Examples:

@@ -11,20 +11,31 @@ use super::results::{Results, folder};
 use super::width;
 use crate::error::Result;
 use crate::export::InferenceData;
-use crate::import::{FILES, Imported, Options, import_all};
+use crate::import::{FILES, Imported, Options, Particle, import_all};
 use crate::report::text::wrap;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The log of a GNSS sensor: a table of text with a header (u-blox logs,
     /// any CSV), or GPX; several for several sensors in one avalanche
-    #[arg(value_name = "LOG", required_unless_present = "front")]
+    #[arg(value_name = "LOG", required_unless_present_any = ["front", "avaframe"])]
     logs: Vec<PathBuf>,
     /// The places of a front by time, a table: t, and x and y, lon and lat, or
     /// s, the horizontal distance along the path; points of one time are
     /// averaged
     #[arg(long, value_name = "FILE")]
     front: Option<PathBuf>,
+    /// A project of AvaFrame: the tables of particles that com1DFA writes with
+    /// writePartToCSV = True, with the project's terrain model and path
+    #[arg(long, value_name = "DIR")]
+    avaframe: Option<PathBuf>,
+    /// Which simulation of the project, where there are several
+    #[arg(long, value_name = "NAME")]
+    simulation: Option<String>,
+    /// What is taken of it: the mean of all particles (the default), the
+    /// front, or particles by their ID; several by commas
+    #[arg(long, value_name = "WHICH", value_delimiter = ',')]
+    particle: Vec<Particle>,
     /// The event folder to write, or that of a folder for each recording;
     /// without it nothing is written
     #[arg(long, value_name = "DIR", value_parser = folder)]
@@ -103,6 +114,9 @@ impl Arguments {
     fn options(&self) -> Options {
         let mut options = Options::of_logs(&self.logs);
         options.front.clone_from(&self.front);
+        options.avaframe.clone_from(&self.avaframe);
+        options.simulation.clone_from(&self.simulation);
+        options.particles.clone_from(&self.particle);
         options.columns.clone_from(&self.columns);
         options.terrain.clone_from(&self.terrain);
         options.path.clone_from(&self.path);

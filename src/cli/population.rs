@@ -244,18 +244,7 @@ fn table(found: &Population, without: usize) -> String {
         "spread",
         "next event (90 %)"
     );
-    for p in &found.parameters {
-        let [low, half, high] = p.median.map(|x| short(x, 3));
-        let median = format!("{half} ({low} to {high})");
-        let [low, half, high] = p.spread.map(|x| short(x, 2));
-        let spread = format!("{half} ({low} to {high})");
-        let [low, _, high] = p.next.map(|x| short(x, 3));
-        let next = format!("{low} to {high}");
-        text.push_str(&format!(
-            "{:10} {median:>24} {spread:>22} {next:>20}\n",
-            p.name
-        ));
-    }
+    text.extend(found.parameters.iter().map(row));
     text.push('\n');
     let logs = found.parameters.iter().filter(|p| p.in_log);
     let logs: Vec<&str> = logs.map(|p| p.name.as_str()).collect();
@@ -275,6 +264,17 @@ fn table(found: &Population, without: usize) -> String {
         text.push_str(&wrapped(&format!("Warning: {warning}."), width));
     }
     text
+}
+
+/// What the population says of a parameter.
+fn row(p: &Shared) -> String {
+    let [low, half, high] = p.median.map(|x| short(x, 3));
+    let median = format!("{half} ({low} to {high})");
+    let [low, half, high] = p.spread.map(|x| short(x, 2));
+    let spread = format!("{half} ({low} to {high})");
+    let [low, _, high] = p.next.map(|x| short(x, 3));
+    let next = format!("{low} to {high}");
+    format!("{:10} {median:>24} {spread:>22} {next:>20}\n", p.name)
 }
 
 /// What the checks say.

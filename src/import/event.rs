@@ -21,7 +21,7 @@ pub(super) fn toml(case: &Case) -> String {
     };
     format!(
         "# Written by `couloir import`; import.txt says what was done, and \
-         what is\n# doubted. All quantities are SI.\n\
+         what is\n# doubted. All quantities are SI.\n{}\
          name = {}\n\n{}\
          [track]\n\
          file = \"track.csv\"               # x: horizontal distance [m],\n\
@@ -29,11 +29,15 @@ pub(super) fn toml(case: &Case) -> String {
          {SPACE}# z: elevation {terrain} [m]\n\n\
          [release]\n\
          x = {:<29}# where the recording begins [m]\n\
-         velocity = {:<22}# the {word}'s speed at t = 0 [m/s], {:.2} s after\n\
-         {SPACE}# its first row\n\n\
+         velocity = {:<22}# the {word}'s speed at t = 0 [m/s],\n\
+         {SPACE}# {:.2} s after its first row\n\n\
          [flow]\n\
          depth = 1.0                      # not measured: with 1, xi stands \
          for xi h [m]\n\n{}\n{MODEL}",
+        match case.moving.log.is_simulated {
+            true => "# Synthetic data: simulated, not measured.\n",
+            false => "",
+        },
         name.trim(),
         clock(case),
         place(case.ends().0),
@@ -63,6 +67,8 @@ fn clock(case: &Case) -> String {
 /// What was recorded.
 fn recorded(case: &Case) -> String {
     let speeds = match case.moving.log.kind {
+        _ if case.moving.log.is_front() => return of_front(case),
+        _ if case.moving.log.is_simulated => "the simulation's own",
         SpeedKind::Whole | SpeedKind::Along => "the receiver's own",
         SpeedKind::Ground => "the receiver's over ground, by the slope",
         SpeedKind::Positions => "by positions",
@@ -70,8 +76,8 @@ fn recorded(case: &Case) -> String {
     };
     format!(
         "[recording]\n\
-         file = \"recording.csv\"           # t [s] and velocity [m/s], \
-         {speeds}\n\
+         file = \"recording.csv\"           # t [s] and velocity [m/s],\n\
+         {SPACE}# {speeds}\n\
          quantity = \"velocity\"\n\
          window = 0.0                     # the values are taken as of the \
          moment\n"

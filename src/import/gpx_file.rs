@@ -95,7 +95,16 @@ fn log_of(
     });
     let doubts = lost.into_iter().collect();
     let path = path.to_owned();
-    Log { path, fixes, frame: Frame::Degrees, kind, begin, said, doubts }
+    Log {
+        path,
+        fixes,
+        frame: Frame::Degrees,
+        kind,
+        begin,
+        is_simulated: false,
+        said,
+        doubts,
+    }
 }
 
 #[cfg(test)]

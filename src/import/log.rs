@@ -60,6 +60,8 @@ pub(super) struct Log {
     pub(super) kind: SpeedKind,
     /// The first row on the log's own clock.
     pub(super) begin: Moment,
+    /// Whether it is of a simulation, and measured by nobody.
+    pub(super) is_simulated: bool,
     /// What was taken from the file, in sentences.
     pub(super) said: Vec<String>,
     /// What there is to doubt about it, in sentences.
@@ -77,7 +79,11 @@ impl Log {
 
     /// What it is called in sentences.
     pub(super) fn word(&self) -> &'static str {
-        if self.is_front() { "front" } else { "log" }
+        match (self.is_front(), self.is_simulated) {
+            (true, _) => "front",
+            (false, true) => "simulation",
+            (false, false) => "log",
+        }
     }
 
     /// The moment that a user names, in seconds since the log's first row: a

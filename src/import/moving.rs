@@ -139,6 +139,10 @@ fn speeds(log: &Log, level: &[f64], said: &mut Vec<String>) -> Vec<f64> {
              the north, to the east and down.",
             own(),
         ),
+        SpeedKind::Along if log.is_simulated => (
+            "Speeds are the simulation's own, taken as those along the slope.",
+            own(),
+        ),
         SpeedKind::Along => (
             "Speeds are the receiver's own, taken as those along the slope.",
             own(),

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::particle::Particle;
 use crate::error::{Error, Result};
 
 /// What is imported, and how: one recording or several of one avalanche.
@@ -24,6 +25,14 @@ pub struct Options {
     /// of `x`, `y` \[m\] (or `lon`, `lat` \[degrees\]) or `s`, the horizontal
     /// distance along the path \[m\]. Rows of one time are averaged.
     pub front: Option<PathBuf>,
+    /// A project of AvaFrame, with the tables that com1DFA wrote of its
+    /// particles. Its terrain model and its path stand in for those that are
+    /// not given.
+    pub avaframe: Option<PathBuf>,
+    /// The simulation of the project, where there are several.
+    pub simulation: Option<String>,
+    /// What is taken of its particles; where there is none, their mean.
+    pub particles: Vec<Particle>,
     /// Columns by name, as `--columns` has them.
     pub columns: Option<String>,
     /// A terrain model, an ESRI ASCII grid or a GeoTIFF.
@@ -61,6 +70,9 @@ impl Options {
         Self {
             logs: logs.into_iter().map(Into::into).collect(),
             front: None,
+            avaframe: None,
+            simulation: None,
+            particles: Vec::new(),
             columns: None,
             terrain: None,
             path: None,
@@ -77,18 +89,15 @@ impl Options {
     /// The folder of each recording's event, by the names of the files; none
     /// where there is one recording only, whose event needs no folder more.
     pub fn folders(&self) -> Vec<String> {
-        let files: Vec<&Path> = self
-            .logs
-            .iter()
-            .chain(&self.front)
-            .map(PathBuf::as_path)
-            .collect();
-        if files.len() < 2 {
+        let files = self.logs.iter().chain(&self.front);
+        let files = files.map(|file| folder(file));
+        let particles = self.particles().iter().map(Particle::to_string);
+        let all: Vec<String> = files.chain(particles).collect();
+        if all.len() < 2 {
             return Vec::new();
         }
         let mut folders: Vec<String> = Vec::new();
-        for file in files {
-            let name = folder(file);
+        for name in all {
             let mut all = (2..).map(|n| format!("{name}-{n}"));
             let taken = |n: &String| folders.contains(n);
             let next = match taken(&name) {
@@ -98,6 +107,15 @@ impl Options {
             folders.extend(next);
         }
         folders
+    }
+
+    /// The particles that are taken of a project of AvaFrame.
+    pub(super) fn particles(&self) -> &[Particle] {
+        match (&self.avaframe, self.particles.is_empty()) {
+            (None, _) => &[],
+            (Some(_), true) => &[Particle::Mean],
+            (Some(_), false) => &self.particles,
+        }
     }
 
     pub(super) fn check(&self) -> Result<()> {
@@ -112,11 +130,26 @@ impl Options {
                 )));
             }
         }
-        let count = self.logs.iter().chain(&self.front).count();
+        let files = self.logs.iter().chain(&self.front).count();
+        let count = files + self.particles().len();
+        let of_project = [
+            ("--simulation", self.simulation.is_some()),
+            ("--particle", !self.particles.is_empty()),
+        ];
+        for (name, _) in of_project.iter().filter(|(_, is_given)| *is_given) {
+            if self.avaframe.is_none() {
+                return Err(Error::input(format!(
+                    "{name}: is given, and there is no simulation; expected \
+                     a project of AvaFrame with it: add --avaframe DIR, or \
+                     leave it out"
+                )));
+            }
+        }
         if count == 0 {
             return Err(Error::input(
-                "there is no recording; expected a log, or a front: give the \
-                 file of a log, or --front FILE",
+                "there is no recording; expected a log, a front, or a \
+                 simulation: give the file of a log, --front FILE, or \
+                 --avaframe DIR",
             ));
         }
         if count > 1 && self.name.is_some() {

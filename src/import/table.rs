@@ -373,7 +373,8 @@ impl<'r> Reader<'r> {
         }
         let Self { frame, kind, .. } = self;
         let (path, fixes) = (self.path.to_owned(), rows.fixes);
-        Ok(Log { path, fixes, frame, kind, begin, said, doubts })
+        let is_simulated = false;
+        Ok(Log { path, fixes, frame, kind, begin, is_simulated, said, doubts })
     }
 
     fn said(&self, count: usize) -> Vec<String> {

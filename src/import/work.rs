@@ -1,6 +1,7 @@
 //! From the files to events, step by step.
 
 use super::along::{self, Along};
+use super::avaframe::{self, Project};
 use super::case::Case;
 use super::crs::Crs;
 use super::elevations::{ground, told};
@@ -9,15 +10,19 @@ use super::ground::Ground;
 use super::log::Log;
 use super::moving::Moving;
 use super::options::Options;
+use super::outline::Outline;
 use super::{plane, source, together};
 use crate::error::Result;
 
 /// Reads the files, and works out what the event of each recording needs.
 pub(super) fn work_out(options: &Options) -> Result<Vec<Case>> {
     options.check()?;
-    let logs = recordings(options)?;
+    let project = Project::of(options)?;
+    let completed = project.as_ref().map(|own| own.complete(options));
+    let options = completed.as_ref().unwrap_or(options);
     let grid = options.terrain.as_deref().map(source::terrain).transpose()?;
     let outline = options.path.as_deref().map(source::path).transpose()?;
+    let logs = recordings(options, project.as_ref(), outline.as_ref())?;
     let crs =
         plane::projection(options, &logs, outline.as_ref(), grid.as_ref())?;
     let line = outline.as_ref().map(|outline| {
@@ -40,12 +45,20 @@ pub(super) fn work_out(options: &Options) -> Result<Vec<Case>> {
     Ok(cases(options, all, along, &ground, grid.as_ref()))
 }
 
-/// The logs, and the front behind them.
-fn recordings(options: &Options) -> Result<Vec<Log>> {
+/// The logs, the front behind them, and what is taken of a simulation.
+fn recordings(
+    options: &Options,
+    project: Option<&Project>,
+    outline: Option<&Outline>,
+) -> Result<Vec<Log>> {
     let columns = options.columns.as_deref();
     let logs = options.logs.iter().map(|path| source::log(path, columns));
     let front = options.front.iter().map(|path| source::front(path, columns));
-    logs.chain(front).collect()
+    let mut all = logs.chain(front).collect::<Result<Vec<_>>>()?;
+    if let Some(project) = project {
+        all.extend(avaframe::logs(project, options.particles(), outline)?);
+    }
+    Ok(all)
 }
 
 /// Notes which projection was taken, and what is to doubt about it.

@@ -8,7 +8,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use couloir::import::{Imported, Options, import, import_all};
+use couloir::import::{Imported, Options, Particle, import, import_all};
 
 /// Says a line that is not held back for tests that pass.
 fn say(text: &str) {
@@ -685,4 +685,135 @@ fn what_does_not_fit_is_refused_with_a_mend() {
         assert!(said.contains(part), "{part}: {said}");
         assert!(!out.exists(), "{more:?}");
     }
+}
+
+/// A project of AvaFrame in which particles of 1, 2 and 3 kg slide north on a
+/// plane of 45 degrees, 10 m apart, from rest with 2 m/s^2 over ground; the
+/// last leaves after 5 s.
+fn avaframe(folder: &Path) {
+    let csv = folder.join("Outputs/com1DFA/particlesCSV");
+    fs::create_dir_all(&csv).unwrap();
+    fs::create_dir_all(folder.join("Inputs/LINES")).unwrap();
+    for step in 0..12_u32 {
+        let t = f64::from(step);
+        let rows = (0..if step > 5 { 2 } else { 3_u32 }).map(|n| {
+            let (y, speed) = (t * t + 10.0 * f64::from(n), 2.0 * t);
+            let speed = speed * 2.0_f64.sqrt();
+            let (z, mass) = (500.0 - y, n + 1);
+            format!("50.0,{y},{z},{speed},{mass},{},{t}\n", n + 7)
+        });
+        let text: String = rows.collect();
+        let text = format!("X,Y,Z,velocityMagnitude,m,ID,time\n{text}");
+        let name = format!("particlesslide_1.csv.{step:04}");
+        fs::write(csv.join(name), text).unwrap();
+    }
+    let row = |y: i32| format!("{0} {0} {0}\n", 500 - y);
+    let rows: String = (0..=40).rev().map(|n| row(10 * n)).collect();
+    let head = "ncols 3\nnrows 41\nxllcenter 0\nyllcenter 0\ncellsize 10\n";
+    let head = head.replace("ncols 3", "ncols 11");
+    let rows = rows.lines().map(|row| {
+        let cell = row.split(' ').next().unwrap();
+        format!("{}\n", [cell; 11].join(" "))
+    });
+    let text: String = std::iter::once(head).chain(rows).collect();
+    fs::write(folder.join("Inputs/dem.asc"), text).unwrap();
+}
+
+#[test]
+fn a_simulation_by_avaframe_is_read() {
+    let folder = std::env::temp_dir().join("couloir-avaframe");
+    let _ = fs::remove_dir_all(&folder);
+    avaframe(&folder);
+    let mut options = Options::of_logs::<PathBuf>([]);
+    options.avaframe = Some(folder.clone());
+    options.threshold = 0.5;
+    let mean = import(&options).unwrap();
+    assert!(mean.event.contains("name = \"slide_1-mean\""), "{}", mean.event);
+    assert!(mean.event.contains("# Synthetic data"), "{}", mean.event);
+    assert!(mean.said[0].contains("centre of mass"), "{:?}", mean.said);
+    assert!(mean.doubts.iter().any(|d| d.contains("are 2 to 3")));
+    // All have one speed along the slope.
+    for (t, speed) in rows(&mean.recording) {
+        let exact = 2.0 * (t + mean.begin) * 2.0_f64.sqrt();
+        assert!((speed - exact).abs() < 1e-3, "{t}: {speed}");
+    }
+    // The terrain is a plane, whatever it is smoothed over.
+    let track = rows(&mean.track);
+    for pair in track.windows(2) {
+        let slope = (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0);
+        assert!((slope + 1.0).abs() < 1e-3, "{slope}");
+    }
+    options.particles = vec![Particle::Number(9), Particle::Mean];
+    let both = import_all(&options).unwrap();
+    assert_eq!(both[0].folder, "particle-9");
+    assert!(both[0].doubts.iter().any(|d| d.contains("in 6 of 12 tables")));
+    let path = folder.join("Inputs/path.geojson");
+    let line = r#"{"type": "LineString", "coordinates":
+        [[50, 0], [50, 390], [50.0, 400.0]]}"#;
+    fs::write(&path, line).unwrap();
+    options.path = Some(path);
+    options.particles = vec![Particle::Front];
+    let front = import(&options).unwrap();
+    // 20 m ahead until it leaves: distances since the first row that moves.
+    let (first, last) = (front.begin, 5.0);
+    let at = |t: f64| 20.0 + t * t - first * first - 20.0;
+    for (t, distance) in rows(&front.recording) {
+        if first + t <= last {
+            let exact = 2.0_f64.sqrt() * at(first + t);
+            assert!((distance - exact).abs() < 0.01, "{t}: {distance}");
+        }
+    }
+    fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
+fn what_avaframe_lacks_is_said() {
+    let folder = std::env::temp_dir().join("couloir-avaframe-wrong");
+    let _ = fs::remove_dir_all(&folder);
+    let mut options = Options::of_logs::<PathBuf>([]);
+    let refused = |options: &Options, part: &str| {
+        let error = import(options).unwrap_err();
+        let text = error.to_string();
+        assert!(error.is_input() && text.contains(part), "{text}");
+    };
+    options.particles = vec![Particle::Front];
+    refused(&options, "add --avaframe DIR");
+    options.avaframe = Some(folder.clone());
+    refused(&options, "writePartToCSV = True");
+    avaframe(&folder);
+    refused(&options, "there is no path");
+    options.particles = vec![Particle::Number(3)];
+    refused(&options, "has no particle of this number");
+    options.simulation = Some("other".to_owned());
+    refused(&options, "expected one of \"slide_1\"");
+    options.simulation = None;
+    let csv = folder.join("Outputs/com1DFA/particlesCSV");
+    let table = csv.join("particlesslide_1.csv.0003");
+    for (text, part) in [
+        ("", "expected the column X"),
+        ("X,Y,Z,velocityMagnitude,time\n", "has no particle"),
+        ("X,Y,Z,time\n1,2,3,3\n", "expected the column velocityMagnitude"),
+        ("X,Y,Z,velocityMagnitude,time\n1,2,3,3,3\n", "has no column ID"),
+        ("X,Y,Z,velocityMagnitude,time\n1,2,3,inf,3\n", "0003:2: column 4"),
+        ("X,Y,Z,velocityMagnitude,time\n1,2,3\n", "is no table"),
+        ("X,Y,Z,velocityMagnitude,m,time\n1,2,3,3,0,3\n", "mass is 0"),
+        (
+            "X,Y,Z,velocityMagnitude,ID,time\n1,2,3,3,1,3\n1,2,3,3,1,4\n",
+            "expected a table of one time",
+        ),
+        ("X,Y,Z,velocityMagnitude,ID,time\n1,2,3,3,3,0\n", "after a table"),
+    ] {
+        options.particles = match part {
+            "after a table" => vec![Particle::Mean],
+            _ => vec![Particle::Number(7)],
+        };
+        fs::write(&table, text).unwrap();
+        refused(&options, part);
+    }
+    fs::write(csv.join("particlesother.csv.0000"), "").unwrap();
+    refused(&options, "there are 2 simulations");
+    fs::remove_file(csv.join("particlesother.csv.0000")).unwrap();
+    fs::write(folder.join("Inputs/b.tif"), "").unwrap();
+    refused(&options, "holds 2 terrain models");
+    fs::remove_dir_all(&folder).unwrap();
 }
