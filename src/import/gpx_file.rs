@@ -53,12 +53,11 @@ fn time(point: &gpx::Waypoint) -> Option<Moment> {
     moment(&text, 1.0)
 }
 
-fn log_of(
+/// The points that are later than the one before.
+fn fixes(
     points: &[Option<(Moment, &gpx::Waypoint)>],
     begin: Moment,
-    path: &Path,
-    tracks: usize,
-) -> Log {
+) -> Vec<Fix> {
     let has_speed = points.iter().flatten().all(|p| p.1.speed.is_some());
     let mut fixes: Vec<Fix> = Vec::new();
     for (number, point) in (1..).zip(points) {
@@ -77,6 +76,16 @@ fn log_of(
             satellites: point.sat.map(|count| count as f64),
         });
     }
+    fixes
+}
+
+fn log_of(
+    points: &[Option<(Moment, &gpx::Waypoint)>],
+    begin: Moment,
+    path: &Path,
+    tracks: usize,
+) -> Log {
+    let fixes = fixes(points, begin);
     let lost = points.len() - fixes.len();
     let kind = match fixes.iter().all(|fix| fix.speed.is_some()) {
         true => SpeedKind::Ground,

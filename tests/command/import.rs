@@ -766,6 +766,40 @@ fn a_simulation_by_avaframe_is_read() {
     fs::remove_dir_all(&folder).unwrap();
 }
 
+/// A table of particles, and what is said of it.
+const TABLES: [(&str, &str); 9] = [
+    ("", "expected the column X"),
+    ("X,Y,Z,velocityMagnitude,time\n", "has no particle"),
+    ("X,Y,Z,time\n1,2,3,3\n", "expected the column velocityMagnitude"),
+    ("X,Y,Z,velocityMagnitude,time\n1,2,3,3,3\n", "has no column ID"),
+    ("X,Y,Z,velocityMagnitude,time\n1,2,3,inf,3\n", "0003:2: column 4"),
+    ("X,Y,Z,velocityMagnitude,time\n1,2,3\n", "is no table"),
+    ("X,Y,Z,velocityMagnitude,m,time\n1,2,3,3,0,3\n", "mass is 0"),
+    (
+        "X,Y,Z,velocityMagnitude,ID,time\n1,2,3,3,1,3\n1,2,3,3,1,4\n",
+        "expected a table of one time",
+    ),
+    ("X,Y,Z,velocityMagnitude,ID,time\n1,2,3,3,7,0\n", "after a table"),
+];
+
+#[test]
+fn tables_of_particles_that_are_none_are_refused() {
+    let folder = std::env::temp_dir().join("couloir-avaframe-tables");
+    let _ = fs::remove_dir_all(&folder);
+    avaframe(&folder);
+    let mut options = Options::of_logs::<PathBuf>([]);
+    options.avaframe = Some(folder.clone());
+    options.particles = vec![Particle::Number(7)];
+    let csv = folder.join("Outputs/com1DFA/particlesCSV");
+    for (text, part) in TABLES {
+        fs::write(csv.join("particlesslide_1.csv.0003"), text).unwrap();
+        let error = import(&options).unwrap_err();
+        let said = error.to_string();
+        assert!(error.is_input() && said.contains(part), "{said}");
+    }
+    fs::remove_dir_all(&folder).unwrap();
+}
+
 #[test]
 fn what_avaframe_lacks_is_said() {
     let folder = std::env::temp_dir().join("couloir-avaframe-wrong");
@@ -787,29 +821,8 @@ fn what_avaframe_lacks_is_said() {
     options.simulation = Some("other".to_owned());
     refused(&options, "expected one of \"slide_1\"");
     options.simulation = None;
+    options.particles.clear();
     let csv = folder.join("Outputs/com1DFA/particlesCSV");
-    let table = csv.join("particlesslide_1.csv.0003");
-    for (text, part) in [
-        ("", "expected the column X"),
-        ("X,Y,Z,velocityMagnitude,time\n", "has no particle"),
-        ("X,Y,Z,time\n1,2,3,3\n", "expected the column velocityMagnitude"),
-        ("X,Y,Z,velocityMagnitude,time\n1,2,3,3,3\n", "has no column ID"),
-        ("X,Y,Z,velocityMagnitude,time\n1,2,3,inf,3\n", "0003:2: column 4"),
-        ("X,Y,Z,velocityMagnitude,time\n1,2,3\n", "is no table"),
-        ("X,Y,Z,velocityMagnitude,m,time\n1,2,3,3,0,3\n", "mass is 0"),
-        (
-            "X,Y,Z,velocityMagnitude,ID,time\n1,2,3,3,1,3\n1,2,3,3,1,4\n",
-            "expected a table of one time",
-        ),
-        ("X,Y,Z,velocityMagnitude,ID,time\n1,2,3,3,3,0\n", "after a table"),
-    ] {
-        options.particles = match part {
-            "after a table" => vec![Particle::Mean],
-            _ => vec![Particle::Number(7)],
-        };
-        fs::write(&table, text).unwrap();
-        refused(&options, part);
-    }
     fs::write(csv.join("particlesother.csv.0000"), "").unwrap();
     refused(&options, "there are 2 simulations");
     fs::remove_file(csv.join("particlesother.csv.0000")).unwrap();
