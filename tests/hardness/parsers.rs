@@ -124,7 +124,7 @@ targets! {
     track: 70, data::track;
     recording: 90, data::recording;
     depth: 60, data::depth;
-    prior: 120, words::prior;
+    prior: 95, words::prior;
     friction: 70, words::friction;
     noise: 70, words::noise;
     shard: 40, words::shard;
@@ -139,6 +139,7 @@ targets! {
     geotiff: 45, imports::geotiff;
     shapefile: 45, imports::shapefile;
     geojson: 30, imports::geojson;
+    particles: 25, imports::particles;
     list: 26, results::list;
     journal: 25, results::journal;
     results: 5, results::earlier;

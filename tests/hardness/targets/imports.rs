@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use couloir::Error;
-use couloir::import::{Options, import_all};
+use couloir::import::{Options, Particle, import_all};
 
 use super::words::text;
 
@@ -89,3 +89,29 @@ pub(crate) fn geojson(folder: &Path, input: &[u8]) -> Result<(), Error> {
     options.path = Some(file(folder, "path.geojson", input));
     take(&options)
 }
+
+/// A table of particles in place of one of a project of AvaFrame.
+pub(crate) fn particles(folder: &Path, input: &[u8]) -> Result<(), Error> {
+    let tables = folder.join("Outputs/com1DFA/particlesCSV");
+    fs::create_dir_all(&tables).unwrap();
+    for step in 0..8_u32 {
+        let (t, y) = (f64::from(step), f64::from(step * step));
+        let row = format!("50.0,{y},{},{},1.0,7,{t}\n", 500.0 - y, 2.0 * t);
+        let text = format!("X,Y,Z,velocityMagnitude,m,ID,time\n{row}");
+        let bytes = if step == 3 { input } else { text.as_bytes() };
+        file(&tables, &format!("particlesslide.csv.{step:04}"), bytes);
+    }
+    let mut options = Options::of_logs::<PathBuf>([]);
+    options.avaframe = Some(folder.to_owned());
+    options.terrain = Some(file(folder, "terrain.asc", TERRAIN));
+    options.path = Some(file(folder, "path.geojson", PATH));
+    options.particles =
+        vec![Particle::Mean, Particle::Front, Particle::Number(7)];
+    take(&options)
+}
+
+/// Where the particles slide.
+const TERRAIN: &[u8] = b"ncols 2\nnrows 2\nxllcenter 0\nyllcenter 0\n\
+    cellsize 500\n100 100\n500 500\n";
+const PATH: &[u8] = br#"{"type": "LineString", "coordinates":
+    [[50, 0], [50, 500]]}"#;
