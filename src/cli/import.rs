@@ -18,7 +18,7 @@ use crate::report::text::wrap;
 pub(super) struct Arguments {
     /// The log of a GNSS sensor: a table of text with a header (u-blox logs,
     /// any CSV), or GPX; several for several sensors in one avalanche
-    #[arg(value_name = "LOG", required_unless_present_any = ["front", "avaframe"])]
+    #[arg(value_name = "LOG")]
     logs: Vec<PathBuf>,
     /// The places of a front by time, a table: t, and x and y, lon and lat, or
     /// s, the horizontal distance along the path; points of one time are

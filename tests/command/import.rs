@@ -589,7 +589,7 @@ fn a_front_that_does_not_fit_is_refused_with_a_mend() {
         (&["--front", &bad], "bad.csv:3: \"s\" is \"far\""),
         (&[&log, &log, "--name", "both"], "--name: is given"),
         (&[&log, "--terrain", &broken], "dem.tif: is no GeoTIFF"),
-        (&[], "LOG"),
+        (&[], "there is no recording; expected a log, a front"),
     ];
     for (arguments, part) in cases {
         let out = folder.join("out");
