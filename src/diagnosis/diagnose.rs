@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use crate::diagnosis::compare::baseline::baseline;
 use crate::diagnosis::compare::checks::{
-    FittedModel, checks, improvement, pictured,
+    FittedModel, checks, improvement, pictured, posterior_rmse,
 };
 use crate::diagnosis::decide::choose::{Choice, Explained};
 use crate::diagnosis::decide::chosen::Chosen;
@@ -18,8 +18,8 @@ use crate::diagnosis::evidence::fit::Fit;
 use crate::diagnosis::evidence::noises::{named_alone, noises};
 use crate::diagnosis::evidence::table::{Row, Table};
 use crate::diagnosis::findings::{
-    Diagnosis, Judged, JudgedNoise, LawParameters, ParameterSummary, Rest,
-    Rival, Verdict,
+    BeforeAfter, Diagnosis, Judged, JudgedNoise, LawParameters,
+    ParameterSummary, Rest, Rival, Verdict, Withheld,
 };
 use crate::diagnosis::hypothesis::{NONE, UNKNOWN};
 use crate::diagnosis::locate::{FreeForce, free_fit, left, own_draws};
@@ -27,7 +27,7 @@ use crate::diagnosis::options::Options;
 use crate::diagnosis::tell::noise::is_other;
 use crate::diagnosis::tell::paste::corrected;
 use crate::diagnosis::tell::place::{mark, mismatch};
-use crate::diagnosis::tell::weak::is_weak;
+use crate::diagnosis::tell::weak::{grows, is_weak};
 use crate::diagnosis::together::Sharing;
 use crate::draws::{Draws, summarise};
 use crate::error::{Error, Result};
@@ -101,6 +101,8 @@ struct Decision {
     chosen: Option<Chosen>,
     /// What does nearly as well as a force of free form that is not.
     equal: Option<Chosen>,
+    /// What would be added if it did not make the fit worse.
+    withheld: Option<Withheld>,
 }
 
 impl Decision {
@@ -125,7 +127,11 @@ impl<P: Program> Subject<'_, P> {
         let mut table = self.table(options, seed, progress)?;
         let row = self.taken(&mut table, options, seed, progress)?;
         progress.begin("weighing several together", None);
-        let decision = self.decide(&table, row, options, seed)?;
+        let mut decision = self.decide(&table, row, options, seed)?;
+        decision.withheld = self.withheld(&table, &decision)?;
+        if decision.withheld.is_some() {
+            decision.chosen = None;
+        }
         progress.begin("showing", None);
         let mut diagnosis = self.shown(&table, &decision, options, seed)?;
         diagnosis.seconds = begun.elapsed().as_secs_f64();
@@ -213,6 +219,7 @@ impl<P: Program> Subject<'_, P> {
             separating: separating(&group, judged),
             group,
             mechanisms: judged.clone(),
+            withheld: decision.withheld.clone(),
             noise: decision.noises.clone(),
             selected_noise: selected_noise(*verdict, row, options),
             law,
@@ -294,7 +301,31 @@ impl<P: Program> Subject<'_, P> {
             verdict = Verdict::Errors;
         }
         let noises = judged_noises(table, &logs)?;
-        Ok(Decision { judged, noises, verdict, row, chosen, equal })
+        let withheld = None;
+        Ok(Decision { judged, noises, verdict, row, chosen, equal, withheld })
+    }
+
+    /// What was chosen, where the posterior mean with it misses the recording
+    /// by more than without: then it explains the errors rather than the
+    /// motion, and a corrected model must not fit worse.
+    fn withheld(
+        &self,
+        table: &Table<'_, P>,
+        decision: &Decision,
+    ) -> Result<Option<Withheld>> {
+        let (events, none) = (&self.events, &table.as_it_was()?.none);
+        let Some(chosen) = &decision.chosen else { return Ok(None) };
+        let mechanisms = chosen.mechanisms(&self.all);
+        let noisy = table.rows[decision.row].noisy.program();
+        let rmse = BeforeAfter {
+            before: posterior_rmse(self.program, events, &[], none)?,
+            after: posterior_rmse(noisy, events, &mechanisms, &chosen.fit)?,
+        };
+        if !grows(&rmse) {
+            return Ok(None);
+        }
+        let names = mechanisms.iter().map(|m| m.name().to_owned()).collect();
+        Ok(Some(Withheld { names, rmse }))
     }
 
     /// Where the mismatch is, and what the corrected model is.

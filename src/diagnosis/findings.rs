@@ -35,6 +35,9 @@ pub struct Diagnosis {
     pub noise: Vec<JudgedNoise>,
     /// The names of what is added to the model; empty where nothing is.
     pub selected: Vec<String>,
+    /// What is not added although the evidence asks for it, since the fit
+    /// would be worse.
+    pub withheld: Option<Withheld>,
     /// The noise of the corrected model.
     pub selected_noise: String,
     /// What the recording cannot tell apart.
@@ -73,6 +76,16 @@ pub struct Diagnosis {
     pub notes: Vec<String>,
     /// Those of the warnings for which its figures should not be used.
     pub doubts: Vec<String>,
+}
+
+/// What evidence asks for and the fit speaks against.
+#[derive(Debug, Clone, Default)]
+#[non_exhaustive]
+pub struct Withheld {
+    /// The names of the mechanisms.
+    pub names: Vec<String>,
+    /// The root mean square error without and with them \[recorded unit\].
+    pub rmse: BeforeAfter,
 }
 
 /// The model as it was, and how it stands to the recording.

@@ -28,7 +28,7 @@ pub(crate) use evidence::noises::{Noises, Noisy, noises};
 pub use findings::{
     Baseline, BeforeAfter, Corrected, Diagnosis, Improvement, Judged,
     JudgedNoise, LawParameters, Mismatch, ParameterSummary, Pictured, Rest,
-    Rival, Variant, Verdict,
+    Rival, Variant, Verdict, Withheld,
 };
 pub use hypothesis::Hypothesis;
 pub use locate::{CELLS, FreeForce, locate};

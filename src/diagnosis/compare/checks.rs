@@ -95,6 +95,22 @@ pub(crate) fn checks<P: Program>(
     })
 }
 
+/// The root mean square error of the posterior mean prediction.
+pub(crate) fn posterior_rmse<P: Program>(
+    program: &P,
+    events: &[&Event],
+    mechanisms: &[&dyn Mechanism],
+    fit: &Fit,
+) -> Result<f64> {
+    let with = With::new(program, mechanisms);
+    let posterior = Posterior::new(&with)?;
+    let replayed = replay(&posterior, &fit.draws)?;
+    let series = recordings(events).into_iter();
+    let values: Vec<Vec<f64>> =
+        series.map(|(_, series)| series.values().to_vec()).collect();
+    Ok(rmse(&values.concat(), &replayed.means.concat()))
+}
+
 /// All series with their events, in the order in which models score them.
 pub(crate) fn recordings<'e>(
     events: &[&'e Event],

@@ -176,6 +176,11 @@ impl Diagnosis {
             "mechanisms": list(&self.mechanisms, judged_json),
             "noise": list(&self.noise, judged_noise_json),
             "selected": self.selected,
+            "withheld": self.withheld.as_ref().map(|withheld| json!({
+                "names": withheld.names,
+                "rmse_before": withheld.rmse.before,
+                "rmse_after": withheld.rmse.after,
+            })),
             "selected_noise": self.selected_noise,
             "group": self.group,
             "rivals": list(&self.rivals, rival_json),

@@ -3,7 +3,7 @@
 
 use crate::diagnosis::hypothesis::NONE;
 use crate::diagnosis::tell::phrases::{
-    is_corrected, joined, recorded_in, with_unit,
+    all_called, capital, is_corrected, joined, recorded_in, with_unit,
 };
 use crate::diagnosis::{BeforeAfter, Diagnosis};
 use crate::report::digits::significant;
@@ -12,10 +12,14 @@ use crate::report::digits::significant;
 /// some hundred draws says nothing.
 const WORSE: f64 = 0.01;
 
+/// Whether an error grows by more than its own uncertainty.
+pub(crate) fn grows(pair: &BeforeAfter) -> bool {
+    pair.after > (1.0 + WORSE) * pair.before
+}
+
 /// The errors that grow although the evidence does, with what they are called.
 fn worse(d: &Diagnosis) -> Vec<(&'static str, BeforeAfter)> {
     let i = &d.improvement;
-    let grows = |pair: &BeforeAfter| pair.after > (1.0 + WORSE) * pair.before;
     let all = [
         ("the root mean square error", i.rmse),
         ("the least one of its motion", i.least_squares),
@@ -30,7 +34,21 @@ fn worse(d: &Diagnosis) -> Vec<(&'static str, BeforeAfter)> {
 pub(crate) fn is_weak(d: &Diagnosis) -> bool {
     let added = !d.selected.is_empty();
     let open = added && d.group.iter().any(|name| name == NONE);
-    open || !worse(d).is_empty()
+    open || d.withheld.is_some() || !worse(d).is_empty()
+}
+
+/// What is not added although the evidence asks for it, and why.
+pub(crate) fn withheld(d: &Diagnosis) -> Option<String> {
+    let withheld = d.withheld.as_ref()?;
+    let BeforeAfter { before, after } = withheld.rmse;
+    Some(format!(
+        "{} would have the most evidence, but the root mean square error \
+         would grow from {} to {}: what makes the fit worse is not added, and \
+         this verdict is weak.",
+        capital(&all_called(d, &withheld.names, "together with")),
+        significant(before, 2),
+        with_unit(&significant(after, 2), recorded_in(d)),
+    ))
 }
 
 /// Why the verdict is weak, where evidence and fit disagree.
@@ -56,6 +74,7 @@ pub(crate) fn disagreement(d: &Diagnosis) -> Option<String> {
 mod tests {
     use super::*;
     use crate::diagnosis::fixture::diagnosis;
+    use crate::diagnosis::{Withheld, in_words};
 
     #[test]
     fn a_fit_that_grows_worse_is_weak_and_told() {
@@ -66,6 +85,21 @@ mod tests {
         let said = disagreement(&d).unwrap();
         let told = "the root mean square error grows from 0.90 to 1.7 m/s;";
         assert!(said.contains(told), "{said}");
+    }
+
+    #[test]
+    fn what_makes_the_fit_worse_is_told_and_weak() {
+        let mut d = diagnosis();
+        let names = std::mem::take(&mut d.selected);
+        let rmse = BeforeAfter { before: 0.68, after: 0.85 };
+        d.withheld = Some(Withheld { names, rmse });
+        assert!(is_weak(&d));
+        let said = withheld(&d).unwrap();
+        let told = "would grow from 0.68 to 0.85 m/s: what makes the fit";
+        assert!(said.contains(told), "{said}");
+        let words = in_words(&d);
+        assert!(words.contains(&said));
+        assert!(words[0].contains("may"), "{}", words[0]);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use crate::diagnosis::tell::phrases::{
     recorded_in, stretch, with_unit,
 };
 use crate::diagnosis::tell::signs::either_sign;
-use crate::diagnosis::tell::weak::disagreement;
+use crate::diagnosis::tell::weak::{disagreement, withheld};
 use crate::diagnosis::{
     Baseline, BeforeAfter, Diagnosis, Hypothesis, Judged, Mismatch,
     ParameterSummary, Rival, Verdict,
@@ -82,24 +82,18 @@ fn quick() -> String {
 fn verdict(d: &Diagnosis) -> String {
     let (model, event) = (model(&d.baseline), event(d));
     match d.verdict {
-        Verdict::Adequate => {
-            let sure =
-                d.mechanisms.iter().find(|m| m.kind == Hypothesis::Baseline);
-            let sure = sure.map_or(String::new(), |m| {
-                format!(" (probability {})", probability(m.probability))
-            });
-            format!(
-                "Nothing is missing: {model} explains {event} \
-                 as well as anything in the catalogue{sure}."
-            )
+        Verdict::Adequate => adequate(d, &model, &event),
+        Verdict::MissingPhysics if d.withheld.is_some() => {
+            format!("Physics may be missing: {model} may not explain {event}.")
         }
         Verdict::MissingPhysics => {
             format!("Physics is missing: {model} does not explain {event}.")
         }
         Verdict::Measurement => format!(
-            "No force is missing from {model}: the {} of {event} is not as \
-             the model has it.",
-            if of_start(d) { "start" } else { "measurement" }
+            "No force is missing from {model}: the {} of {event} {} as the \
+             model has it.",
+            if of_start(d) { "start" } else { "measurement" },
+            if d.withheld.is_some() { "may not be" } else { "is not" }
         ),
         Verdict::Errors => format!(
             "No force is missing from {}: the errors of {event} are not {} \
@@ -112,6 +106,17 @@ fn verdict(d: &Diagnosis) -> String {
              describes: {model} does not explain {event}."
         ),
     }
+}
+
+fn adequate(d: &Diagnosis, model: &str, event: &str) -> String {
+    let sure = d.mechanisms.iter().find(|m| m.kind == Hypothesis::Baseline);
+    let sure = sure.map_or(String::new(), |m| {
+        format!(" (probability {})", probability(m.probability))
+    });
+    format!(
+        "Nothing is missing: {model} explains {event} as well as anything in \
+         the catalogue{sure}."
+    )
 }
 
 /// Whether it is the start rather than the measurement that is off.
@@ -189,9 +194,9 @@ fn explanation(d: &Diagnosis) -> String {
         d.selected.iter().filter_map(|name| judged(d, name)).collect();
     let what = capital(&all_called(d, &d.selected, "together with"));
     match found[..] {
-        [] if d.selected.is_empty() => {
+        [] if d.selected.is_empty() => withheld(d).unwrap_or_else(|| {
             "No single mechanism stands out as its explanation.".to_owned()
-        }
+        }),
         [best] if d.selected.len() == 1 => format!(
             "{what} {} this (probability {}){}.",
             if best.noun.plural { "explain" } else { "explains" },
