@@ -209,8 +209,7 @@ impl<P: Program> Subject<'_, P> {
             law.corrected.clear();
         }
         let group = group(judged);
-        let none = &table.as_it_was()?.none;
-        let rivals = decision.rivals(all, none);
+        let rivals = decision.rivals(all, &table.as_it_was()?.none);
         let mut diagnosis = Diagnosis {
             verdict: *verdict,
             quick: options.quick,
