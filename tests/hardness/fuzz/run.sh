@@ -7,7 +7,7 @@
 # What fails is left in target/fuzz/found.
 set -euo pipefail
 cd "$(dirname "$0")"
-# Beside what the tests are built in, and out of the way of both.
+# With the rest of what is built, which git ignores.
 export CARGO_TARGET_DIR=../../../target/fuzz
 
 seconds=${1:-60}
@@ -51,6 +51,6 @@ for target in "${targets[@]}"; do
     printf '%-10s %s inputs=%s new=%s %s MB=%s\n' "$target" "$result" \
         "$(of number_of_executed_units)" "$(of new_units_added)" \
         "$edges" "$(of peak_rss_mb)"
-    rm -rf "$learned"
+    rm -rf "$learned" "$learned.log"
 done
 exit $failed
