@@ -40,7 +40,7 @@ impl Engine {
         let path = out.join(SCRIPT);
         let folder = out.join("engine");
         let mut command = self.command(shards);
-        let told = run(command.current_dir(&folder))?;
+        let told = run(command.current_dir(&folder), &path)?;
         let text = format!(
             "Submitted {shards} shards by {}: {}. When they have ended, run \
              the same without --engine for the summary.",
@@ -93,12 +93,16 @@ fn script(
 }
 
 /// Runs a scheduler's command; what it says.
-fn run(command: &mut Command) -> Result<String> {
+fn run(command: &mut Command, script: &Path) -> Result<String> {
     let name = command.get_program().to_string_lossy().into_owned();
+    let words: Vec<_> =
+        command.get_args().map(|w| w.to_string_lossy()).collect();
+    let by_hand = format!("{name} {}", words.join(" "));
     let failed = |why: &str| {
         Error::system(format!(
-            "{name}: {why}; the script is written: submit it by hand, or \
-             leave --engine away"
+            "{name}: {why}; {} is written: run `{by_hand}` in its folder \
+             where {name} is, or leave --engine away",
+            place(script)
         ))
     };
     let output =

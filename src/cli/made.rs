@@ -97,6 +97,16 @@ pub(super) fn document(laws: &Laws, words: &[OsString]) -> Result<Value> {
     }
 }
 
+/// What would be refused of a command's words before it does anything, and of
+/// what kind that is.
+pub(super) fn refusal(
+    laws: &Laws,
+    words: &[OsString],
+) -> Option<(ErrorKind, Error)> {
+    let error = parsed_last(laws, words).err()?;
+    Some((error.kind(), refused(&error)))
+}
+
 /// What was wrong with the words, without advice for a terminal.
 fn refused(error: &clap::Error) -> Error {
     if error.kind() == ErrorKind::DisplayHelp {
@@ -106,7 +116,9 @@ fn refused(error: &clap::Error) -> Error {
     let parts = text.split("\n\n").filter(|part| {
         !part.starts_with("Usage:") && !part.starts_with("For more")
     });
-    let said: Vec<&str> = parts.map(str::trim).collect();
+    // How a terminal would pass a word on is no advice here.
+    let said = parts.map(str::trim).filter(|p| !p.starts_with("tip: to pass"));
+    let said: Vec<&str> = said.collect();
     let said = said.join("; ");
     Error::input(said.strip_prefix("error: ").unwrap_or(&said))
 }
@@ -116,7 +128,7 @@ mod tests {
     use super::*;
     use crate::infer::Quiet;
 
-    fn refusal(words: &[&str]) -> String {
+    fn refused(words: &[&str]) -> String {
         let words: Vec<OsString> = words.iter().map(Into::into).collect();
         let made = made(&Laws::default(), &words, &Quiet);
         let error = made.err().unwrap();
@@ -126,12 +138,12 @@ mod tests {
 
     #[test]
     fn words_that_are_wrong_are_told_as_in_a_terminal() {
-        let seed = refusal(&["calibrate", "--seed=x"]);
+        let seed = refused(&["calibrate", "--seed=x"]);
         assert!(seed.starts_with("invalid value 'x' for '--seed"), "{seed}");
-        let none = refusal(&["calibrate", "--friction=voelmy"]);
+        let none = refused(&["calibrate", "--friction=voelmy"]);
         assert!(none.contains("voellmy"), "{none}");
-        let other = refusal(&["bench"]);
+        let other = refused(&["bench"]);
         assert!(other.starts_with("couloir bench: expected"), "{other}");
-        refusal(&["calibrate", "--help"]);
+        refused(&["calibrate", "--help"]);
     }
 }

@@ -1,17 +1,19 @@
 //! `couloir sweep`: one command for many events, each of them once.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use clap::error::ErrorKind;
 use clap::{Args, ValueEnum};
+use rayon::prelude::*;
 use serde_json::Value;
 
-use super::answer::Answer;
+use super::answer::{Answer, wrapped};
 use super::at_least_one;
 use super::engine::Engine;
-use super::made::document;
+use super::made::{document, refusal};
 use super::pace::duration;
 use super::progress::Told;
 use super::results::{Results, folder};
@@ -23,7 +25,7 @@ use crate::physics::friction::Laws;
 use crate::sweep::write_parquet;
 use crate::sweep::{
     Index, Listed, Outcome, Plan, Ran, Row, Rows, Shard, Summary, Task, cores,
-    listed, page, run, summed, write_csv, write_json,
+    listed, page, run, summed, without_path, write_csv, write_json,
 };
 
 #[derive(Debug, Args)]
@@ -53,8 +55,8 @@ pub(super) struct Arguments {
     /// an array of jobs to DIR/engine/sweep.sh, and submits it
     #[arg(long, value_enum, conflicts_with_all = ["shard", "json"])]
     engine: Option<Engine>,
-    /// How many shards the scheduler gets; one for each 100 events where not
-    /// given
+    /// How many shards the scheduler gets; where not given as many as there
+    /// can be of 100 events or more
     #[arg(long, value_name = "N", requires = "engine",
           value_parser = at_least_one)]
     shards: Option<usize>,
@@ -88,8 +90,9 @@ impl Verb {
 const REFUSED: [&str; 5] =
     ["--out", "--json", "--strict", "--format", "--figures"];
 
-/// How many events a shard has, where nobody says: a task of a scheduler costs
-/// about as much as part of an event, and is to be spent on many.
+/// How many events a shard has at the least, where nobody says: a task of a
+/// scheduler costs about as much as part of an event, and is to be spent on
+/// many.
 const SHARD: usize = 100;
 
 /// What the summary writes.
@@ -135,8 +138,10 @@ impl Arguments {
         self.refuse_options()?;
         let results = Results::ready(Some(&self.out), FILES, &[])?;
         let list = listed(&self.list)?;
+        self.refuse_for_all(laws, &list)?;
         if let Some(engine) = self.engine {
-            let shards = self.shards.unwrap_or(list.len().div_ceil(SHARD));
+            let most = (list.len() / SHARD).max(1);
+            let shards = self.shards.unwrap_or(most);
             let words = self.words_of_a_shard()?;
             return engine.submit(&self.out, &words, shards).map(Answer::from);
         }
@@ -160,11 +165,16 @@ impl Arguments {
         let verb = self.verb.name();
         let work = |task: &Task| {
             let words = task.words(verb, &self.options, &planned.list);
-            document(laws, &words).map(shortened)
+            let event = &planned.list[task.at].event;
+            match document(laws, &words) {
+                Ok(result) => Ok(shortened(result)),
+                Err(error) => {
+                    Err(Error::input(without_path(&error.to_string(), event)))
+                }
+            }
         };
         let begun = Instant::now();
-        told.begin("Events", Some(planned.tasks.len() as u64));
-        let mut teller = Teller { told, begun, said: begun, advanced: 0 };
+        let mut teller = Teller { told, begun, said: begun, advanced: None };
         let ran =
             run(&planned.tasks, &plan, &work, &mut |ran| teller.hear(ran))?;
         told.finish();
@@ -195,7 +205,13 @@ impl Arguments {
         let text = match self.json {
             true => json_of(&summary, &rows)?,
             false => {
-                summary.table() + &results.told(&wrote, FILES, super::width())
+                let width = super::width();
+                let failures = summary.told_failures();
+                let failures = failures.iter().map(|f| wrapped(f, width));
+                let failures = failures.map(|f| format!("\n{f}"));
+                summary.table()
+                    + &failures.collect::<String>()
+                    + &results.told(&wrote, FILES, width)
             }
         };
         Ok(with_failures(text, summary.failed()).after(wrote))
@@ -226,10 +242,7 @@ impl Arguments {
             let text = option.to_string_lossy();
             let name = text.split('=').next().unwrap_or_default();
             if REFUSED.contains(&name) {
-                return Err(Error::input(format!(
-                    "{name} behind --: a sweep says itself where results go; \
-                     leave it away"
-                )));
+                return Err(said_itself(Path::new("behind --"), name));
             }
             if !text.starts_with('-') && self.is_alone(option) {
                 return Err(Error::input(format!(
@@ -238,6 +251,46 @@ impl Arguments {
                     self.verb.name()
                 )));
             }
+        }
+        Ok(())
+    }
+
+    /// Refuses what would fail for every event, or every one with a value in a
+    /// column: options that the command does not take, or has to have.
+    fn refuse_for_all(&self, laws: &Laws, list: &[Listed]) -> Result<()> {
+        let verb = self.verb.name();
+        let refused = |own: &[OsString]| {
+            let words = [&[verb.into()], &*self.options, own].concat();
+            refusal(laws, &words)
+        };
+        // What it has to have, a column may give.
+        if let Some((kind, error)) = refused(&[])
+            && kind != ErrorKind::MissingRequiredArgument
+        {
+            return Err(error.within("behind --"));
+        }
+        let mut known = HashSet::new();
+        for listed in list {
+            let mut new = known.is_empty();
+            for option in &listed.options {
+                let option = option.to_string_lossy();
+                let name = option.split('=').next().unwrap_or_default();
+                if REFUSED.contains(&name) {
+                    return Err(said_itself(&self.list, name));
+                }
+                new |= known.insert(name.to_owned());
+            }
+            let of_all = [
+                ErrorKind::MissingRequiredArgument,
+                ErrorKind::UnknownArgument,
+            ];
+            if new
+                && let Some((kind, error)) = refused(&listed.options)
+                && of_all.contains(&kind)
+            {
+                return Err(error.within(place(&self.list)));
+            }
+            known.insert(String::new());
         }
         Ok(())
     }
@@ -253,11 +306,17 @@ impl Arguments {
     fn planned(&self, list: Vec<Listed>) -> Planned {
         let shard = self.shard.unwrap_or(Shard::ALL);
         let (mut tasks, mut unread) = (Vec::new(), BTreeMap::new());
-        for at in (0..list.len()).filter(|at| shard.takes(*at)) {
-            match Task::new(self.verb.name(), &self.options, &list, at) {
+        let own = (0..list.len()).into_par_iter();
+        let own = own.filter(|at| shard.takes(*at)).map(|at| {
+            (at, Task::new(self.verb.name(), &self.options, &list, at))
+        });
+        for (at, task) in own.collect::<Vec<_>>() {
+            match task {
                 Ok(task) => tasks.push(task),
                 Err(error) => {
-                    unread.insert(at, error.to_string());
+                    let event = &list[at].event;
+                    let why = without_path(&error.to_string(), event);
+                    unread.insert(at, why);
                 }
             }
         }
@@ -317,6 +376,14 @@ fn with_failures(text: String, failed: usize) -> Answer {
     answer
 }
 
+/// The refusal of an option that a sweep gives itself.
+fn said_itself(at: &Path, name: &str) -> Error {
+    Error::input(format!(
+        "{}: {name}: a sweep says itself where results go; leave it away",
+        place(at)
+    ))
+}
+
 /// The part of a result that a sweep keeps.
 fn shortened(mut result: Value) -> Value {
     if let Some(members) = result.as_object_mut() {
@@ -337,15 +404,33 @@ struct Teller<'t> {
     told: &'t Told,
     begun: Instant,
     said: Instant,
-    advanced: usize,
+    /// How many of those to do are done; nothing was told yet where `None`.
+    advanced: Option<usize>,
 }
 
 impl Teller<'_> {
+    /// Those done before are told of, and are no part of the progress: the
+    /// time that is left follows from those done now.
+    fn begin(&self, ran: &Ran) {
+        let what = match ran.before {
+            0 => "Events".to_owned(),
+            before => format!("Events, {before} done before"),
+        };
+        match ran.to_do {
+            0 => {}
+            to_do if self.told.is_bar() => {
+                self.told.begin(&what, Some(to_do as u64));
+            }
+            to_do => self.told.say(&format!("{what}: {to_do} to do ...")),
+        }
+    }
+
     fn hear(&mut self, ran: &Ran) {
         let now = ran.done + ran.failed;
-        let all = ran.before + now;
-        self.told.advance((all - self.advanced.min(all)) as u64);
-        self.advanced = all;
+        let Some(advanced) = self.advanced.replace(now) else {
+            return self.begin(ran);
+        };
+        self.told.advance(now.saturating_sub(advanced) as u64);
         if self.told.is_bar() || now == 0 || self.said.elapsed() < EVERY {
             return;
         }

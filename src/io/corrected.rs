@@ -5,6 +5,7 @@ use std::path::Path;
 
 use toml_edit::{Array, DocumentMut, Item, TableLike, Value, table};
 
+use super::document::Document;
 use super::embedded;
 use super::event_file::{MOST_BYTES, find};
 use super::source::{read_data, read_text};
@@ -109,8 +110,9 @@ fn edited(
 /// An event.toml that was read before, with its comments.
 pub(super) fn editable(text: &str, path: &Path) -> Result<DocumentMut> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    text.parse().map_err(|_| {
-        Error::input(format!("{}: is not TOML any more", place(path)))
+    text.parse().map_err(|_| match Document::parse(text, path) {
+        Err(error) => error,
+        Ok(_) => Error::input(format!("{}: is not TOML", place(path))),
     })
 }
 

@@ -3,7 +3,7 @@
 
 use std::io::{self, Write};
 
-use super::row::{Row, csv_line};
+use super::row::{Cell, Row, csv_line};
 use super::summary::Summary;
 use crate::error::Result;
 
@@ -55,7 +55,8 @@ pub fn write_csv(
     file: &mut dyn Write,
 ) -> io::Result<()> {
     let columns = summary.columns();
-    writeln!(file, "{}", columns.names().join(","))?;
+    let names = columns.names().into_iter().map(Cell::Text);
+    file.write_all(csv_line(&names.collect::<Vec<_>>()).as_bytes())?;
     all(rows, &mut |row| {
         file.write_all(csv_line(&columns.cells(row)).as_bytes())
     })

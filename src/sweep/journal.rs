@@ -94,13 +94,18 @@ impl Journal {
         let folder = folder_of(sweep);
         fs::create_dir_all(&folder)
             .map_err(|error| failed(&folder, &error))?;
-        let name = format!("{part}-{}.{ENDING}", nonce());
+        let nonce = nonce();
+        let name = format!("{part}-{nonce}.{ENDING}");
         let path = folder.join(name);
         let new = OpenOptions::new().append(true).create_new(true).open(&path);
         let file = new.map_err(|error| failed(&path, &error))?;
-        // The name is in the folder, which has to outlast a loss of power too.
-        let entry = File::open(&folder).and_then(|folder| folder.sync_all());
-        entry.map_err(|error| failed(&folder, &error))?;
+        // The names of file and folders have to outlast a loss of power too.
+        let real = folder.canonicalize();
+        let real = real.map_err(|error| failed(&folder, &error))?;
+        for within in real.ancestors().take(NEW_FOLDERS) {
+            let synced = File::open(within).and_then(|f| f.sync_all());
+            synced.map_err(|error| failed(within, &error))?;
+        }
         Ok(Self { file, path })
     }
 
@@ -112,6 +117,16 @@ impl Journal {
         let wrote = wrote.and_then(|()| self.file.sync_data());
         wrote.map_err(|error| failed(&self.path, &error))
     }
+}
+
+/// How many folders may be new: that of the results, that of the sweep, and
+/// the one that this stands in.
+const NEW_FOLDERS: usize = 3;
+
+/// When a journal was begun, as its name says.
+fn begun(path: &Path) -> Option<u128> {
+    let name = path.file_stem()?.to_str()?;
+    u128::from_str_radix(name.rsplit('-').next()?, 16).ok()
 }
 
 /// What no other process calls its journal: host, process and time.
@@ -142,7 +157,8 @@ struct Entry {
 }
 
 /// What the journals of a sweep hold: for each task the place of its line, of
-/// the first with a result where there are several.
+/// the first with a result where there are several, or else of the last
+/// failure.
 #[derive(Debug)]
 pub struct Index {
     folder: PathBuf,
@@ -214,7 +230,7 @@ impl Index {
                 paths.push(path);
             }
         }
-        paths.sort();
+        paths.sort_by_cached_key(|path| (begun(path), path.clone()));
         if let Some(others) = &self.others {
             paths.retain(|path| !others.wrote(path));
         }
@@ -254,7 +270,8 @@ impl Index {
                 let entry =
                     Entry { journal, at: *at, length: line.len(), failed };
                 let kept = self.entries.entry(key).or_insert(entry);
-                if kept.failed && !failed {
+                // Of failures the last one tells what is wrong now.
+                if kept.failed {
                     *kept = entry;
                 }
             }
@@ -358,6 +375,21 @@ mod tests {
             assert_eq!(index.outcome(&key(1)).unwrap(), None, "byte {at}");
             assert_eq!(index.outcome(&key(2)).unwrap(), Some(done(2)));
         }
+        fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn of_failures_the_last_is_told() {
+        let folder = fresh("last");
+        let failed = |why: &str| Outcome::Failed(why.to_owned());
+        // By name the second would be the first.
+        for (part, why) in [("b", "disk full"), ("a", "no speed")] {
+            let mut journal = Journal::create(&folder, part).unwrap();
+            journal.append(&[(key(1), failed(why))]).unwrap();
+        }
+        let index = Index::of(&folder).unwrap();
+        let found = index.outcome(&key(1)).unwrap();
+        assert_eq!(found, Some(failed("no speed")));
         fs::remove_dir_all(&folder).unwrap();
     }
 

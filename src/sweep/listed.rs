@@ -1,5 +1,6 @@
 //! The events of a sweep: a folder of folders, a pattern, or a CSV file.
 
+use std::collections::HashSet;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -34,30 +35,35 @@ impl Listed {
 /// The events of a list: of a folder, those below it, by the order of their
 /// paths; of a pattern with `*`, `?` or `[...]`, those that match; of a CSV
 /// file, those of its column `event`, whose other columns are options of that
-/// name, an empty cell being none. Its paths are relative to its folder.
+/// name, an empty cell being none. Its paths are relative to its folder. An
+/// event.toml is a list of one.
+///
+/// Links are followed. What is met by several paths below a folder, or by a
+/// pattern, is listed once: links may lead in a circle.
 ///
 /// # Errors
 /// A list that cannot be read, or holds no event.
 pub fn listed(list: &Path) -> Result<Vec<Listed>> {
     let text = list.to_string_lossy();
     let is_csv = list.extension().is_some_and(|e| e == "csv");
+    let no_list = |what: &str| {
+        Error::input(format!(
+            "{}: {what}; expected a folder that holds event folders, a \
+             pattern such as \"survey/*\", or a CSV file with a column event",
+            place(list)
+        ))
+    };
     let events = match list.exists() {
         true if is_csv && list.is_file() => of_csv(list)?,
         true if list.is_dir() => {
             let mut events = Vec::new();
-            below(list, &mut events)?;
+            below(list, &mut HashSet::new(), &mut events)?;
             events
         }
-        true => vec![Listed::of(list.to_owned())],
+        true if is_file(list) => vec![Listed::of(list.to_owned())],
+        true => return Err(no_list("this file is no list")),
         false if text.contains(['*', '?', '[']) => matching(&text)?,
-        false => {
-            return Err(Error::input(format!(
-                "{}: there is no such list; expected a folder that holds \
-                 event folders, a pattern such as \"survey/*\", or a CSV file \
-                 with a column event",
-                place(list)
-            )));
-        }
+        false => return Err(no_list("there is no such list")),
     };
     match events.is_empty() {
         false => Ok(events),
@@ -69,9 +75,16 @@ pub fn listed(list: &Path) -> Result<Vec<Listed>> {
     }
 }
 
-/// The event in a folder, or those in the folders that it holds; links are
-/// not followed, which could lead in a circle.
-fn below(folder: &Path, events: &mut Vec<Listed>) -> Result<()> {
+/// The event in a folder, or those in the folders that it holds, but for
+/// folders that were met before.
+fn below(
+    folder: &Path,
+    met: &mut HashSet<PathBuf>,
+    events: &mut Vec<Listed>,
+) -> Result<()> {
+    if !is_new(folder, met) {
+        return Ok(());
+    }
     if folder.join(FILE).is_file() {
         events.push(Listed::of(folder.to_owned()));
         return Ok(());
@@ -84,13 +97,20 @@ fn below(folder: &Path, events: &mut Vec<Listed>) -> Result<()> {
     };
     let mut folders = Vec::new();
     for entry in fs::read_dir(folder).map_err(unread)? {
-        let entry = entry.map_err(unread)?;
-        if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
-            folders.push(entry.path());
+        let path = entry.map_err(unread)?.path();
+        if path.is_dir() {
+            folders.push(path);
         }
     }
     folders.sort();
-    folders.iter().try_for_each(|folder| below(folder, events))
+    folders.iter().try_for_each(|folder| below(folder, met, events))
+}
+
+/// Whether a place was not met before, by any path.
+fn is_new(path: &Path, met: &mut HashSet<PathBuf>) -> bool {
+    // What has no real path fails by itself when it is read.
+    let real = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    met.insert(real)
 }
 
 /// What an event's file is called.
@@ -102,7 +122,9 @@ fn matching(pattern: &str) -> Result<Vec<Listed>> {
     })?;
     let is_event = |path: &PathBuf| path.join(FILE).is_file() || is_file(path);
     let paths = paths.filter_map(std::result::Result::ok).filter(is_event);
-    Ok(paths.map(Listed::of).collect())
+    let mut met = HashSet::new();
+    let once = paths.filter(|path| is_new(path, &mut met));
+    Ok(once.map(Listed::of).collect())
 }
 
 fn is_file(path: &Path) -> bool {
@@ -111,10 +133,19 @@ fn is_file(path: &Path) -> bool {
 
 fn of_csv(list: &Path) -> Result<Vec<Listed>> {
     let wrong = |error: csv::Error| {
-        Error::input(format!(
-            "{}: it could not be read as CSV: {error}",
-            place(list)
-        ))
+        let line = error.position().map(|at| format!(":{}", at.line()));
+        let what = match error.kind() {
+            csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+                format!("{len} cells; expected {expected_len}, as in its head")
+            }
+            csv::ErrorKind::Utf8 { .. } => {
+                "is no text; expected UTF-8".to_owned()
+            }
+            csv::ErrorKind::Io(error) => format!("could not be read: {error}"),
+            _ => "is no CSV table".to_owned(),
+        };
+        let line = line.unwrap_or_default();
+        Error::input(format!("{}{line}: {what}", place(list)))
     };
     let mut reader = csv::ReaderBuilder::new()
         .comment(Some(b'#'))
@@ -133,7 +164,16 @@ fn of_csv(list: &Path) -> Result<Vec<Listed>> {
     let mut events = Vec::new();
     for line in reader.records() {
         let line = line.map_err(wrong)?;
-        let event = folder.join(line.get(at).unwrap_or_default());
+        let event = line.get(at).unwrap_or_default();
+        if event.is_empty() {
+            let number = line.position().map_or(0, csv::Position::line);
+            return Err(Error::input(format!(
+                "{}:{number}: the cell of event is empty; expected the path \
+                 of an event folder",
+                place(list)
+            )));
+        }
+        let event = folder.join(event);
         let cells = head.iter().zip(&line);
         let said =
             cells.filter(|(name, cell)| *name != EVENT && !cell.is_empty());
@@ -182,10 +222,29 @@ mod tests {
         assert_eq!(names(&folder, &folder), ["a", "b/1", "b/2"]);
         assert_eq!(names(&folder.join("b/*"), &folder), ["b/1", "b/2"]);
         assert_eq!(names(&folder.join("a"), &folder), ["a"]);
-        for none in ["empty", "missing", "missing/*"] {
+        fs::write(folder.join("list.txt"), "a\n").unwrap();
+        for none in ["empty", "missing", "missing/*", "list.txt"] {
             let error = listed(&folder.join(none)).unwrap_err();
             assert!(error.is_input(), "{error}");
         }
+        fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_followed_and_no_event_is_listed_twice() {
+        let folder = fresh("links");
+        let far = fresh("far");
+        let link = |from: &Path, to: &str| {
+            std::os::unix::fs::symlink(from, folder.join(to)).unwrap();
+        };
+        link(&far.join("a"), "c");
+        link(&folder, "b/around");
+        link(&folder.join("b"), "d");
+        assert_eq!(names(&folder, &folder), ["a", "b/1", "b/2", "c"]);
+        let all = names(&folder.join("**/*"), &folder);
+        assert_eq!(all.len(), 5, "{all:?}");
+        fs::remove_dir_all(&far).unwrap();
         fs::remove_dir_all(&folder).unwrap();
     }
 
@@ -203,6 +262,14 @@ mod tests {
         fs::write(&list, "path\na\n").unwrap();
         let error = listed(&list).unwrap_err().to_string();
         assert!(error.contains("no column is called event"), "{error}");
+        for (rows, said) in [
+            ("event,seed\na,1\n,2\n", "list.csv:3: the cell of event"),
+            ("event,seed\na,1\na\n", "list.csv:3: 1 cells; expected 2"),
+        ] {
+            fs::write(&list, rows).unwrap();
+            let error = listed(&list).unwrap_err().to_string();
+            assert!(error.contains(said), "{error}");
+        }
         fs::remove_dir_all(&folder).unwrap();
     }
 }

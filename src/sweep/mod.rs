@@ -29,4 +29,4 @@ pub use row::{DRAWS, Row};
 pub use run::{Plan, Ran, cores, run};
 pub use shard::Shard;
 pub use summary::Summary;
-pub use task::{Key, Task};
+pub use task::{Key, Task, without_path};

@@ -15,6 +15,9 @@ use crate::report::text::plain;
 /// which no browser has to draw.
 const SHOWN: usize = 300;
 
+/// From how many bytes on a text is a sentence, which is broken into lines.
+const WORDS: usize = 40;
+
 /// How many kinds of failure, and how many events of each.
 const FAILURES: [usize; 2] = [50, 10];
 
@@ -46,7 +49,7 @@ fn body(summary: &Summary, first: &[Row]) -> Markup {
         h1 { "Sweep: " (plain(&summary.verb)) }
         p.sub { (summary.counts()) "." }
         (verdicts(summary))
-        (mechanisms(summary))
+        (candidates(summary))
         (parameters(summary))
         (failures(summary))
         (events(summary, first))
@@ -89,21 +92,27 @@ fn verdicts(summary: &Summary) -> Markup {
     }
 }
 
-fn mechanisms(summary: &Summary) -> Markup {
+fn heading(kind: &str) -> String {
+    let mut letters = kind.chars();
+    let first = letters.next().map(|c| c.to_ascii_uppercase());
+    first.into_iter().chain(letters).chain(['s']).collect()
+}
+
+fn candidates(summary: &Summary) -> Markup {
     let ranked = summary.ranked();
     html! {
         @if !ranked.is_empty() {
-            h2 { "Mechanisms" }
+            h2 { (heading(summary.kind())) }
             div.wide {
                 table {
                     tr {
-                        th { "mechanism" } th { "selected" }
+                        th { (summary.kind()) } th { "selected" }
                         th { "mean probability" } th.left { "" }
                     }
                     @for (name, seen) in ranked {
                         tr {
                             td { (plain(name)) }
-                            td { (seen.selected) }
+                            td { (seen.times_selected(name)) }
                             td { (format!("{:.3}", seen.mean())) }
                             (bar(seen.mean()))
                         }
@@ -111,8 +120,8 @@ fn mechanisms(summary: &Summary) -> Markup {
                 }
             }
             p.note {
-                "The mean is over the events in which the mechanism was \
-                 weighed."
+                "The mean is over the events in which the " (summary.kind())
+                " was weighed."
             }
         }
     }
@@ -135,7 +144,7 @@ fn parameters(summary: &Summary) -> Markup {
             div.wide {
                 table {
                     tr {
-                        th { "parameter" } th { "5 %" } th { "half" }
+                        th { "parameter" } th { "5 %" } th { "50 %" }
                         th { "95 %" } th.left { "unit" }
                     }
                     @for (name, medians) in &summary.parameters {
@@ -186,12 +195,15 @@ fn failures(summary: &Summary) -> Markup {
 /// The first events one by one.
 fn events(summary: &Summary, first: &[Row]) -> Markup {
     let columns = Columns {
-        mechanisms: Vec::new(),
+        candidates: Vec::new(),
         parameters: summary.columns().parameters,
     };
     let names = columns.names();
     let cell = |cell: &Cell| match cell {
-        Cell::Text(text) => html! { td.name { (plain(text)) } },
+        Cell::Text(text) if text.len() > WORDS => {
+            html! { td.said { (plain(text)) } }
+        }
+        Cell::Text(text) => html! { td.word { (plain(text)) } },
         Cell::Number(Some(number)) => {
             html! { td { (significant(*number, 3)) } }
         }

@@ -1,9 +1,12 @@
 //! An event of a sweep as one row, of a document and of a table.
 
+use std::f64::consts::LN_10;
+
 use serde_json::{Value, json};
 
 use super::journal::Outcome;
 use super::task::Key;
+use crate::draws::log_sum_exp;
 
 /// The member of a result that holds draws, by parameter.
 pub const DRAWS: &str = "draws";
@@ -79,10 +82,10 @@ pub(super) enum Cell {
 }
 
 /// The columns of a table: those of every event, a probability for each
-/// mechanism, and quantiles of each parameter.
+/// mechanism or model, and quantiles of each parameter.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Columns {
-    pub(super) mechanisms: Vec<String>,
+    pub(super) candidates: Vec<String>,
     pub(super) parameters: Vec<String>,
 }
 
@@ -98,8 +101,8 @@ impl Columns {
     pub(super) fn names(&self) -> Vec<String> {
         let mut names: Vec<String> =
             EVERY.iter().map(|name| (*name).to_owned()).collect();
-        let mechanisms = self.mechanisms.iter();
-        names.extend(mechanisms.map(|name| format!("p({name})")));
+        let candidates = self.candidates.iter();
+        names.extend(candidates.map(|name| format!("p({name})")));
         for parameter in &self.parameters {
             names.extend(QUANTILES.map(|of| format!("{parameter}_{of}")));
         }
@@ -109,18 +112,19 @@ impl Columns {
     /// What they say of an event.
     pub(super) fn cells(&self, row: &Row) -> Vec<Cell> {
         let result = row.result().unwrap_or(&Value::Null);
+        let (weighed, chosen) = (weighed(result), chosen(result));
         let text = |text: &str| Cell::Text(text.to_owned());
         let mut cells = vec![
             text(&row.event),
             text(row.status()),
             text(result["verdict"].as_str().unwrap_or_default()),
-            text(&texts(&result["selected"]).join(" + ")),
-            Cell::Number(probability_of_selected(result)),
+            text(&chosen.join(" + ")),
+            Cell::Number(least_probability(&weighed, &chosen)),
             text(row.message().unwrap_or_default()),
         ];
-        for name in &self.mechanisms {
-            let found = mechanisms(result).find(|(known, _)| known == name);
-            cells.push(Cell::Number(found.map(|(_, p)| p)));
+        for name in &self.candidates {
+            let found = weighed.iter().find(|(known, _)| known == name);
+            cells.push(Cell::Number(found.map(|(_, p)| *p)));
         }
         for name in &self.parameters {
             let of = |level| result["parameters"][name][level].as_f64();
@@ -131,25 +135,64 @@ impl Columns {
 }
 
 /// The names in a list of texts.
-pub(super) fn texts(list: &Value) -> Vec<String> {
+fn texts(list: &Value) -> Vec<String> {
     let all = list.as_array().into_iter().flatten();
     all.filter_map(|text| text.as_str().map(str::to_owned)).collect()
 }
 
-/// The mechanisms of a result, each with its probability.
-pub(super) fn mechanisms(
-    result: &Value,
-) -> impl Iterator<Item = (&str, f64)> + '_ {
-    let all = result["mechanisms"].as_array().into_iter().flatten();
-    all.filter_map(|m| Some((m["name"].as_str()?, m["probability"].as_f64()?)))
+/// What a result weighs, each with its probability: the mechanisms of a
+/// diagnosis, or the models of a comparison, as likely as each other
+/// beforehand.
+pub(super) fn weighed(result: &Value) -> Vec<(String, f64)> {
+    let models: Vec<(String, f64)> = members(result, "models")
+        .filter_map(|model| {
+            let factor = model["log10_bayes_factor"]["value"].as_f64()?;
+            Some((name_of(model), factor * LN_10))
+        })
+        .collect();
+    let total = log_sum_exp(models.iter().map(|(_, log)| *log));
+    let of_models =
+        models.into_iter().map(|(n, log)| (n, (log - total).exp()));
+    let of_mechanisms = members(result, "mechanisms").filter_map(|one| {
+        let name = one["name"].as_str()?.to_owned();
+        Some((name, one["probability"].as_f64()?))
+    });
+    of_mechanisms.chain(of_models).collect()
 }
 
-/// The least probability of a mechanism that was selected.
-fn probability_of_selected(result: &Value) -> Option<f64> {
-    let selected = texts(&result["selected"]);
-    let own = mechanisms(result)
-        .filter(|(name, _)| selected.iter().any(|one| one == name));
-    own.map(|(_, probability)| probability).reduce(f64::min)
+/// What a result says it is: the mechanisms that a diagnosis selected, or the
+/// likeliest model of a comparison.
+pub(super) fn chosen(result: &Value) -> Vec<String> {
+    if result["models"].is_null() {
+        return texts(&result["selected"]);
+    }
+    let best = weighed(result).into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
+    best.map(|(name, _)| name).into_iter().collect()
+}
+
+fn members<'r>(
+    result: &'r Value,
+    list: &str,
+) -> impl Iterator<Item = &'r Value> {
+    result[list].as_array().into_iter().flatten()
+}
+
+/// A model as `compare` takes it: friction, noise, and what was added.
+fn name_of(model: &Value) -> String {
+    let parts = ["friction", "noise"].map(|part| model[part].as_str());
+    let added = texts(&model["mechanisms"]).join(" + ");
+    let added = Some(added.as_str()).filter(|added| !added.is_empty());
+    let all: Vec<&str> = parts.into_iter().chain([added]).flatten().collect();
+    all.join(", ")
+}
+
+/// The least probability of what was chosen.
+fn least_probability(
+    weighed: &[(String, f64)],
+    chosen: &[String],
+) -> Option<f64> {
+    let own = weighed.iter().filter(|(name, _)| chosen.contains(name));
+    own.map(|(_, probability)| *probability).reduce(f64::min)
 }
 
 /// A line of a CSV file.
@@ -188,6 +231,26 @@ mod tests {
         assert_eq!(csv_cell("a, \"b\""), "\"a, \"\"b\"\"\"");
         let cells = [Cell::Number(Some(-2.5)), Cell::Number(None)];
         assert_eq!(csv_line(&cells), "-2.5,\n");
+    }
+
+    #[test]
+    fn models_are_weighed_by_their_evidence_at_even_odds() {
+        let model = |noise: &str, added: &[&str], factor: f64| {
+            json!({
+                "friction": "voellmy", "noise": noise, "mechanisms": added,
+                "log10_bayes_factor": {"value": factor},
+            })
+        };
+        let result = json!({"models": [
+            model("iid", &[], 0.0),
+            model("ar(1)", &["surge", "drag"], 3_f64.log10()),
+        ]});
+        let found = weighed(&result);
+        assert_eq!(found[0].0, "voellmy, iid");
+        assert_eq!(chosen(&result), ["voellmy, ar(1), surge + drag"]);
+        assert!((found[0].1 - 0.25).abs() < 1e-12, "{found:?}");
+        let least = least_probability(&found, &chosen(&result));
+        assert_eq!(least, Some(found[1].1));
     }
 
     #[test]

@@ -31,7 +31,8 @@ pub struct Plan<'a> {
     pub retry: bool,
     /// Which part of the list the tasks are.
     pub shard: Shard,
-    /// The list: no two of its shards hold the same task.
+    /// The list. Its shards hold different tasks, but where the list has an
+    /// event twice: that is then done by each of them, to the same result.
     pub list: &'a [Listed],
 }
 

@@ -4,12 +4,14 @@
 //! for byte, however often the work was stopped and wherever it was done.
 //! Rows go by one at a time, and are not held.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::row::{Columns, Row, mechanisms, texts};
+use super::row::{Columns, Row, chosen, weighed};
+use crate::diagnosis::Hypothesis;
 use crate::draws::quantile;
 use crate::io::place;
 use crate::report::digits::short;
@@ -23,7 +25,23 @@ pub(super) struct Seen {
     events: usize,
 }
 
+/// How many kinds of failure a terminal tells.
+const TOLD: usize = 10;
+
+/// What to do about failures.
+const TRY_AGAIN: &str = "What failed is not tried again until the event's \
+    files or the options change, or --retry is given.";
+
 impl Seen {
+    /// How often it was selected; nothing is never selected, it is what is
+    /// left.
+    pub(super) fn times_selected(&self, name: &str) -> String {
+        match name == Hypothesis::Baseline.name() {
+            true => "-".to_owned(),
+            false => self.selected.to_string(),
+        }
+    }
+
     pub(super) fn mean(&self) -> f64 {
         self.probability / self.events.max(1) as f64
     }
@@ -43,7 +61,8 @@ pub struct Summary {
     pub(super) events: usize,
     missing: usize,
     pub(super) verdicts: BTreeMap<String, usize>,
-    mechanisms: BTreeMap<String, Seen>,
+    /// What was weighed: mechanisms, or the models of comparisons.
+    candidates: BTreeMap<String, Seen>,
     pub(super) parameters: BTreeMap<String, Medians>,
     pub(super) failures: BTreeMap<String, Vec<String>>,
 }
@@ -73,11 +92,11 @@ impl Summary {
         if let Some(verdict) = result["verdict"].as_str() {
             *self.verdicts.entry(verdict.to_owned()).or_default() += 1;
         }
-        for selected in texts(&result["selected"]) {
-            self.mechanisms.entry(selected).or_default().selected += 1;
+        for name in chosen(result) {
+            self.candidates.entry(name).or_default().selected += 1;
         }
-        for (name, probability) in mechanisms(result) {
-            let seen = self.mechanisms.entry(name.to_owned()).or_default();
+        for (name, probability) in weighed(result) {
+            let seen = self.candidates.entry(name).or_default();
             seen.probability += probability;
             seen.events += 1;
         }
@@ -110,14 +129,20 @@ impl Summary {
     /// The columns that its tables have.
     pub(super) fn columns(&self) -> Columns {
         Columns {
-            mechanisms: self.mechanisms.keys().cloned().collect(),
+            candidates: self.candidates.keys().cloned().collect(),
             parameters: self.parameters.keys().cloned().collect(),
         }
     }
 
-    /// Mechanisms by how often they were selected, then by their probability.
+    /// What was weighed in each event, in the singular.
+    pub(super) fn kind(&self) -> &'static str {
+        if self.verb == "compare" { "model" } else { "mechanism" }
+    }
+
+    /// Mechanisms or models by how often they were selected, then by their
+    /// probability.
     pub(super) fn ranked(&self) -> Vec<(&str, Seen)> {
-        let all = self.mechanisms.iter();
+        let all = self.candidates.iter();
         let mut all: Vec<_> =
             all.map(|(name, seen)| (name.as_str(), *seen)).collect();
         all.sort_by(|(_, a), (_, b)| {
@@ -129,7 +154,7 @@ impl Summary {
 
     /// `sweep.json` without its rows.
     pub(super) fn document(&self) -> Value {
-        let mechanism = |(name, seen): (&str, Seen)| {
+        let candidate = |(name, seen): (&str, Seen)| {
             json!({
                 "name": name,
                 "selected": seen.selected,
@@ -138,9 +163,9 @@ impl Summary {
         };
         let failure =
             |(why, events)| json!({"message": why, "events": events});
-        let mechanisms = self.ranked().into_iter().map(mechanism);
+        let candidates = self.ranked().into_iter().map(candidate);
         let failures = self.failures.iter().map(failure);
-        json!({
+        let mut document = json!({
             "schema": 1,
             "verb": self.verb,
             "events": self.events,
@@ -148,16 +173,19 @@ impl Summary {
             "failed": self.failed(),
             "missing": self.missing,
             "verdicts": self.verdicts,
-            "mechanisms": mechanisms.collect::<Vec<_>>(),
+            "mechanisms": [],
             "failures": failures.collect::<Vec<_>>(),
-        })
+        });
+        document[format!("{}s", self.kind())] = candidates.collect();
+        document
     }
 
     /// How many events there are, and what became of them.
     pub(super) fn counts(&self) -> String {
         format!(
-            "{} events: {} done, {} failed, {} not done yet",
+            "{} event{}: {} done, {} failed, {} not done yet",
             self.events,
+            if self.events == 1 { "" } else { "s" },
             self.done(),
             self.failed(),
             self.missing
@@ -177,26 +205,41 @@ impl Summary {
         if !ranked.is_empty() {
             text.push_str(&format!(
                 "\n{:28} {:>9} {:>18}\n",
-                "mechanism", "selected", "mean probability"
+                self.kind(),
+                "selected",
+                "mean probability"
             ));
         }
         for (name, seen) in ranked {
             text.push_str(&format!(
                 "{name:28} {:>9} {:>18.3}\n",
-                seen.selected,
+                seen.times_selected(name),
                 seen.mean()
             ));
         }
-        text.push_str(&self.medians());
-        for (why, events) in &self.failures {
+        text + &self.medians()
+    }
+
+    /// What failed, a sentence for each message, those of most events first.
+    pub fn told_failures(&self) -> Vec<String> {
+        let mut all: Vec<_> = self.failures.iter().collect();
+        all.sort_by_key(|(_, events)| Reverse(events.len()));
+        let sentence = |(why, events): &(&String, &Vec<String>)| {
             let first = events.first().map_or("", String::as_str);
-            let count = events.len();
-            text.push_str(&format!(
-                "\n{count} failed, {} first: {why}\n",
-                place(Path::new(first))
-            ));
+            let first = place(Path::new(first));
+            match events.len() {
+                1 => format!("{first} failed: {why}"),
+                count => format!("{count} failed, {first} first: {why}"),
+            }
+        };
+        let mut told: Vec<String> =
+            all.iter().take(TOLD).map(sentence).collect();
+        if all.len() > TOLD {
+            let more = all.len() - TOLD;
+            told.push(format!("{more} more messages are in sweep.json."));
         }
-        text
+        told.extend((!all.is_empty()).then(|| TRY_AGAIN.to_owned()));
+        told
     }
 
     /// Where the events' medians of each parameter lie.
@@ -205,13 +248,13 @@ impl Summary {
         if !self.parameters.is_empty() {
             text.push_str(&format!(
                 "\n{:28} {:>9} {:>9} {:>9}  events' medians\n",
-                "parameter", "5 %", "half", "95 %"
+                "parameter", "5 %", "50 %", "95 %"
             ));
         }
         for (name, medians) in &self.parameters {
-            let [low, half, high] = medians.quantiles().map(|x| short(x, 3));
+            let [low, middle, high] = medians.quantiles().map(|x| short(x, 3));
             text.push_str(&format!(
-                "{name:28} {low:>9} {half:>9} {high:>9}  {}\n",
+                "{name:28} {low:>9} {middle:>9} {high:>9}  {}\n",
                 medians.unit
             ));
         }
@@ -272,5 +315,39 @@ mod tests {
         assert!(table.contains("3 events: 1 done, 1 failed, 1 not done yet"));
         assert!(table.contains("mu"), "{table}");
         assert!(table.lines().all(|line| line.chars().count() <= 80));
+    }
+
+    #[test]
+    fn failures_are_told_by_their_message_the_most_first() {
+        let mut summary = summary();
+        for of in 0..2 * TOLD {
+            for event in 0..=of % 2 {
+                let outcome = Some(Outcome::Failed(format!("why {of:02}")));
+                let event = format!("{of}-{event}");
+                summary.add(&Row { event, task: None, outcome });
+            }
+        }
+        let told = summary.told_failures();
+        assert_eq!(told[0], "2 failed, 1-0 first: why 01");
+        assert_eq!(told[TOLD], "11 more messages are in sweep.json.");
+        assert_eq!(told[TOLD + 1..], [TRY_AGAIN]);
+        assert!(Summary::new("diagnose").told_failures().is_empty());
+    }
+
+    #[test]
+    fn models_of_comparisons_are_counted() {
+        let mut summary = Summary::new("compare");
+        let model = |law: &str, factor: f64| {
+            json!({"friction": law, "noise": "iid",
+                   "log10_bayes_factor": {"value": factor}})
+        };
+        let models = json!([model("coulomb", 0.0), model("voellmy", 2.0)]);
+        let outcome = Some(Outcome::Done(json!({"models": models})));
+        summary.add(&Row { event: "a".to_owned(), task: None, outcome });
+        let document = summary.document();
+        assert_eq!(document["models"][0]["name"], "voellmy, iid");
+        assert_eq!(document["models"][0]["selected"], 1);
+        assert_eq!(document["mechanisms"], json!([]));
+        assert!(summary.table().contains("voellmy, iid"));
     }
 }

@@ -2,10 +2,11 @@
 
 use std::ffi::OsString;
 use std::fmt;
+use std::path::Path;
 
 use super::listed::Listed;
 use crate::error::Result;
-use crate::io::{inputs, sha256};
+use crate::io::{inputs, place, sha256};
 use crate::report::PROGRAM;
 
 /// The name of a task: the SHA-256 of the program's version, the command and
@@ -33,6 +34,32 @@ impl Key {
 impl fmt::Display for Key {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
+    }
+}
+
+/// A message about an event's files without the path to them: a task that
+/// fails says the same wherever the survey is.
+pub fn without_path(message: &str, event: &Path) -> String {
+    let folder = match event.is_file() {
+        true => event.parent().unwrap_or(Path::new("")),
+        false => event,
+    };
+    let folder = place(folder);
+    // A name that would break the line is quoted, whole.
+    let (quote, folder) = match folder.strip_suffix('"') {
+        Some(quoted) => ("\"", quoted),
+        None => ("", folder.as_str()),
+    };
+    let rest = Some(message).filter(|_| !folder.is_empty());
+    let rest = rest.and_then(|message| message.strip_prefix(folder));
+    let file = rest.and_then(|rest| rest.strip_prefix('/'));
+    let itself = rest.and_then(|rest| {
+        rest.strip_prefix(quote).and_then(|rest| rest.strip_prefix(": "))
+    });
+    match (file, itself) {
+        (Some(file), _) => format!("{quote}{file}"),
+        (_, Some(what)) => what.to_owned(),
+        _ => message.to_owned(),
     }
 }
 
@@ -84,5 +111,26 @@ impl Task {
         words.push("--".into());
         words.push(listed.event.clone().into_os_string());
         words
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_message_says_the_same_wherever_the_event_is() {
+        let found = |message: &str, event: &str| {
+            without_path(message, Path::new(event))
+        };
+        let csv = "a/b/recording.csv:2: speed";
+        assert_eq!(found(csv, "a/b"), "recording.csv:2: speed");
+        assert_eq!(found("a/b: does not exist", "a/b"), "does not exist");
+        // A folder m is no part of a unit.
+        assert_eq!(found("8 m/s is little", "m"), "8 m/s is little");
+        assert_eq!(found("m/s/event.toml: x", "m/s"), "event.toml: x");
+        let odd = place(Path::new("a\nb/event.toml"));
+        assert_eq!(found(&(odd + ":1: x"), "a\nb"), "\"event.toml\":1: x");
+        assert_eq!(found("a/b", ""), "a/b");
     }
 }
