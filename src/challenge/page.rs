@@ -64,8 +64,8 @@ pub fn words(scored: &Scored) -> Vec<String> {
         told(&s.within_noise)
     ));
     said.push(format!(
-        "The fit is never worse but in {} by its root mean square error, and \
-         in {} by the least that the motion can have.",
+        "The fit got worse in {} by its root mean square error, and in {} by \
+         the least that the motion can have.",
         told(&s.worse),
         told(&s.worse_at_best)
     ));

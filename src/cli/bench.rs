@@ -131,9 +131,9 @@ fn line(row: &Row) -> String {
         .found
         .evidence
         .as_ref()
-        .map_or("-".into(), |e| format!("{:.2} +- {:.2}", e.log, e.se));
+        .map_or("-".into(), |e| format!("{:.2} ± {:.2}", e.log, e.se));
     format!(
-        "{:12} {:7.2} {:9} {:>7} {:>8} {:>8} {:>6} {:>16}\n",
+        "{:15} {:7.2} {:9} {:>7} {:>8} {:>8} {:>6} {:>16}\n",
         row.name,
         row.found.cost.seconds,
         row.found.cost.simulations,
@@ -148,7 +148,7 @@ fn line(row: &Row) -> String {
 fn tell(title: &str, rows: &[Row]) -> String {
     let mut text = wrapped(title, width());
     text.push_str(&format!(
-        "\n{:12} {:>7} {:>9} {:>7} {:>8} {:>8} {:>6} {:>16}\n",
+        "\n{:15} {:>7} {:>9} {:>7} {:>8} {:>8} {:>6} {:>16}\n",
         "backend",
         "s",
         "sims",

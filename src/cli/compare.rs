@@ -320,10 +320,9 @@ fn table(compared: &[Compared]) -> String {
         let factor = if std::ptr::eq(c, &compared[0]) {
             "-".to_owned()
         } else {
-            format!("{factor:.3} +- {se:.3}")
+            format!("{factor:.3} ± {se:.3}")
         };
-        let evidence =
-            format!("{:.3} +- {:.3}", c.evidence.log, c.evidence.se);
+        let evidence = format!("{:.3} ± {:.3}", c.evidence.log, c.evidence.se);
         if name.chars().count() > 34 {
             text.push_str(&format!("{name}\n{:34}", ""));
         } else {

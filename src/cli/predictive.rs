@@ -126,10 +126,10 @@ fn table(models: &[Predicted<'_>], best: &Predicted<'_>) -> String {
             text.push_str(&format!("{:25}", model.name));
         }
         let (elpd, se) = sum_and_error(model.parts);
-        let elpd = format!("{elpd:.2} +- {se:.2}");
+        let elpd = format!("{elpd:.2} ± {se:.2}");
         let behind = match model.behind(best) {
             _ if std::ptr::eq(model, best) => "-".to_owned(),
-            (value, se) => format!("{value:.2} +- {se:.2}"),
+            (value, se) => format!("{value:.2} ± {se:.2}"),
         };
         let k = shape(model.largest_k());
         let last = model.ahead.map_or(model.high(), |(_, fits)| fits);

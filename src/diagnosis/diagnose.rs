@@ -27,7 +27,7 @@ use crate::diagnosis::options::Options;
 use crate::diagnosis::tell::noise::is_other;
 use crate::diagnosis::tell::paste::corrected;
 use crate::diagnosis::tell::place::{mark, mismatch};
-use crate::diagnosis::tell::weak::{grows, is_weak};
+use crate::diagnosis::tell::weak::is_weak;
 use crate::diagnosis::together::Sharing;
 use crate::draws::{Draws, summarise};
 use crate::error::{Error, Result};
@@ -320,7 +320,7 @@ impl<P: Program> Subject<'_, P> {
             before: posterior_rmse(self.program, events, &[], none)?,
             after: posterior_rmse(noisy, events, &mechanisms, &chosen.fit)?,
         };
-        if !grows(&rmse) {
+        if !rmse.grows() {
             return Ok(None);
         }
         let names = mechanisms.iter().map(|m| m.name().to_owned()).collect();

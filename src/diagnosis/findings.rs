@@ -372,6 +372,17 @@ pub struct BeforeAfter {
     pub after: f64,
 }
 
+/// By what share an error must grow to be worse: below it a posterior mean of
+/// some hundred draws says nothing.
+const WORSE: f64 = 0.01;
+
+impl BeforeAfter {
+    /// Whether an error grows by more than its own uncertainty.
+    pub(crate) fn grows(&self) -> bool {
+        self.after > (1.0 + WORSE) * self.before
+    }
+}
+
 /// The corrected model, written out.
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]

@@ -9,7 +9,7 @@ use crate::draws::median;
 use crate::error::{Error, Result};
 use crate::io::place;
 
-/// Positions nearer than this to the last one kept are no way \[m\].
+/// Positions nearer than this to the last one kept are left out \[m\].
 const STEP: f64 = 3.0;
 
 /// Further than this from the path, positions are of another place \[m\].
@@ -138,7 +138,8 @@ pub(super) fn on_own(all: &[Moving]) -> Result<Along> {
     let word = all.first().map_or("log", |one| one.log.word());
     let mut said = vec![format!(
         "The path is the {word}'s own positions, {:.1} m long seen from \
-         above; those less than {STEP} m from the last one kept are no way.",
+         above; those less than {STEP} m from the last one kept are left out \
+         of it.",
         line.length()
     )];
     let beside = all.iter().map(|one| line.follow(one.taken()));

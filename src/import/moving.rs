@@ -214,7 +214,7 @@ fn told_phase(
     let (from, to) = (times[phase.first], times[phase.last]);
     let rows = phase.last - phase.first;
     let cut = format!(
-        "Taken is the {} from {from:.2} to {to:.2} s after its first row: \
+        "The event is the {} from {from:.2} to {to:.2} s after its first row: \
          {rows} values over {:.2} s, and the speed at t = 0",
         log.word(),
         to - from

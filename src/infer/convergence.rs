@@ -52,7 +52,7 @@ pub(crate) fn convergence(
     let mut warnings = Vec::new();
     if let Some(Poor { worst, others }) = apart {
         warnings.push(format!(
-            "the chains have not agreed on {}{others} (R-hat {:.3}, should \
+            "the chains have not agreed on {}{others} (R-hat {:.4}, should \
              be at most {HIGHEST_RHAT}): ask for more --warmup and --draws, \
              or compare with smc",
             worst.name, worst.rhat

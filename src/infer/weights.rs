@@ -86,7 +86,8 @@ fn warn(k: f64, effective: f64, n: f64) -> Vec<String> {
     if k > POOR {
         warnings.push(format!(
             "the importance weights have a heavy tail (Pareto k = {k:.2}, \
-             above {POOR}): evidence and its error cannot be trusted; use smc"
+             above {POOR}): evidence and its error cannot be trusted; \
+             `couloir compare` has the backend smc, which tempers"
         ));
     }
     if effective < 0.02 * n {

@@ -9,8 +9,12 @@
 
 use rand_distr::Distribution as _;
 
+use super::incomplete::{beta_fraction, ln_beta_parts};
 use super::special::{ln_gamma, root};
-use super::{Distribution, Prior, Support, impossible, positive, quantile_of};
+use super::{
+    Cumulative, Distribution, Prior, Support, impossible, positive,
+    quantile_of,
+};
 use crate::scalar::{Kind, Plain, Real};
 use crate::seed::Rng;
 
@@ -79,8 +83,28 @@ impl<K: Kind> Prior<K> for Beta<K> {
     }
 }
 
+impl<K: Kind> Cumulative<K> for Beta<K> {
+    fn log_below(&self, x: Real<K>) -> Real<K> {
+        self.log_parts(x).0
+    }
+
+    fn log_above(&self, x: Real<K>) -> Real<K> {
+        self.log_parts(x).1
+    }
+}
+
+impl<K: Kind> Beta<K> {
+    fn log_parts(&self, x: Real<K>) -> (Real<K>, Real<K>) {
+        if self.values().is_none() {
+            return (impossible(), impossible());
+        }
+        let (a, b) = (self.a, self.b);
+        ln_beta_parts([a, b], [x, 1.0 - x], ln_beta(a, b))
+    }
+}
+
 /// ln B(a, b) = ln (Γ(a) Γ(b) / Γ(a + b)).
-fn ln_beta<K: Kind>(a: Real<K>, b: Real<K>) -> Real<K> {
+pub(super) fn ln_beta<K: Kind>(a: Real<K>, b: Real<K>) -> Real<K> {
     ln_gamma(a) + ln_gamma(b) - ln_gamma(a + b)
 }
 
@@ -117,29 +141,7 @@ fn ln_logit_beta(a: f64, b: f64, ln_beta: f64, z: f64) -> (f64, f64) {
     (ln_density, ln_below)
 }
 
-/// The continued fraction 1 + d1/(1 + d2/(1 + ..)) of x^a (1 - x)^b / (a B)
-/// over the regularised incomplete beta function (DLMF 8.17.22), from the
-/// left (Lentz); quick below the mean, in about sqrt(a + b) terms.
 fn fraction(a: f64, b: f64, x: f64) -> f64 {
-    let (mut value, mut c, mut d) = (1.0, 1.0, 0.0);
-    for k in 1..20_000 {
-        let m = f64::from(k / 2);
-        let term = if k % 2 == 1 {
-            -(a + m) * (a + b + m) / ((a + 2.0 * m) * (a + 2.0 * m + 1.0))
-        } else {
-            m * (b - m) / ((a + 2.0 * m - 1.0) * (a + 2.0 * m))
-        } * x;
-        d = 1.0 / off_zero(1.0 + term * d);
-        c = off_zero(1.0 + term / c);
-        value *= c * d;
-        if (c * d - 1.0).abs() < 1e-16 {
-            break;
-        }
-    }
-    value
-}
-
-/// `x`, or a tiny number in place of 0.
-fn off_zero(x: f64) -> f64 {
-    if x == 0.0 { 1e-300 } else { x }
+    let [a, b, x] = [a, b, x].map(Real::<Plain>::new);
+    beta_fraction(a, b, x).value()
 }

@@ -15,9 +15,9 @@ use crate::scalar::{Kind, Real};
 /// ```
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be truncated",
-    label = "the probability of a range needs a formula with derivatives: \
-             `Normal`, `LogNormal`, `Exponential`, `Uniform`, `HalfNormal`, \
-             `Cauchy` and `HalfCauchy` have one"
+    label = "the probability of a range needs a formula with derivatives \
+             (`couloir::prior::Cumulative`): all real distributions have one \
+             but `Flat`, `Mixture` and `Truncated`"
 )]
 pub trait Cumulative<K: Kind>: Prior<K> {
     /// ln of the probability of a draw below `x`, a number of the support.

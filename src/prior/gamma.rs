@@ -9,8 +9,12 @@
 use rand_distr::{Distribution as _, Exp1};
 use statrs::function::gamma::{checked_gamma_lr, checked_gamma_ur};
 
+use super::incomplete::ln_gamma_parts;
 use super::special::{ln_gamma, normal_quantile, root};
-use super::{Distribution, Prior, Support, impossible, positive, quantile_of};
+use super::{
+    Cumulative, Distribution, Prior, Support, impossible, positive,
+    quantile_of,
+};
 use crate::scalar::{Kind, Plain, Real};
 use crate::seed::Rng;
 
@@ -79,6 +83,25 @@ impl<K: Kind> Prior<K> for Gamma<K> {
         quantile_of(&self.support(), p, |p| {
             (scale.ln() + ln_quantile(shape, p, 1.0 - p)).exp()
         })
+    }
+}
+
+impl<K: Kind> Cumulative<K> for Gamma<K> {
+    fn log_below(&self, x: Real<K>) -> Real<K> {
+        self.log_parts(x).0
+    }
+
+    fn log_above(&self, x: Real<K>) -> Real<K> {
+        self.log_parts(x).1
+    }
+}
+
+impl<K: Kind> Gamma<K> {
+    fn log_parts(&self, x: Real<K>) -> (Real<K>, Real<K>) {
+        match self.values() {
+            Some(_) => ln_gamma_parts(self.shape, x / self.scale),
+            None => (impossible(), impossible()),
+        }
     }
 }
 

@@ -6,8 +6,12 @@
 //! draw is the scale over a gamma draw, both as logarithms.
 
 use super::gamma::{ln_draw, ln_quantile};
+use super::incomplete::ln_gamma_parts;
 use super::special::ln_gamma;
-use super::{Distribution, Prior, Support, impossible, positive, quantile_of};
+use super::{
+    Cumulative, Distribution, Prior, Support, impossible, positive,
+    quantile_of,
+};
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 
@@ -76,5 +80,26 @@ impl<K: Kind> Prior<K> for InverseGamma<K> {
         quantile_of(&self.support(), p, |p| {
             (scale.ln() - ln_quantile(shape, 1.0 - p, p)).exp()
         })
+    }
+}
+
+/// x is below where the gamma number that it is the inverse of is above.
+impl<K: Kind> Cumulative<K> for InverseGamma<K> {
+    fn log_below(&self, x: Real<K>) -> Real<K> {
+        self.log_parts(x).1
+    }
+
+    fn log_above(&self, x: Real<K>) -> Real<K> {
+        self.log_parts(x).0
+    }
+}
+
+impl<K: Kind> InverseGamma<K> {
+    /// ln of the probabilities that the gamma number is below and above.
+    fn log_parts(&self, x: Real<K>) -> (Real<K>, Real<K>) {
+        match self.values() {
+            Some(_) => ln_gamma_parts(self.shape, self.scale / x),
+            None => (impossible(), impossible()),
+        }
     }
 }

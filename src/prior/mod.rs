@@ -22,6 +22,7 @@ mod flat;
 mod gamma;
 mod half_cauchy;
 mod half_normal;
+mod incomplete;
 mod inverse_gamma;
 mod joint;
 mod log_normal;

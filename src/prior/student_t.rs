@@ -9,10 +9,12 @@
 
 use rand_distr::{Distribution as _, StandardNormal};
 
+use super::cumulative::ln_1m_exp;
+use super::incomplete::ln_beta_parts;
 use super::special::{ln_1p_squared, ln_gamma, normal_quantile};
 use super::{
-    Distribution, LN_SQRT_2PI, Prior, Support, beta, gamma, impossible,
-    positive, quantile_of,
+    Cumulative, Distribution, LN_SQRT_2PI, Prior, Support, beta, gamma,
+    impossible, positive, quantile_of,
 };
 use crate::scalar::{Kind, Real, polynomial};
 use crate::seed::Rng;
@@ -99,6 +101,38 @@ impl<K: Kind> Prior<K> for StudentT<K> {
         quantile_of(&self.support(), p, |p| {
             location + scale * standard_quantile(freedom, p)
         })
+    }
+}
+
+impl<K: Kind> Cumulative<K> for StudentT<K> {
+    fn log_below(&self, x: Real<K>) -> Real<K> {
+        self.log_tail((self.location - x) / self.scale)
+    }
+
+    fn log_above(&self, x: Real<K>) -> Real<K> {
+        self.log_tail((x - self.location) / self.scale)
+    }
+}
+
+impl<K: Kind> StudentT<K> {
+    /// ln of the probability of a draw of location 0 and scale 1 above t.
+    fn log_tail(&self, t: Real<K>) -> Real<K> {
+        let n = self.freedom;
+        if self.values().is_none() {
+            return impossible();
+        }
+        let square = t * t;
+        if square == 0.0 {
+            // The formula below has no derivative here.
+            return (0.5 - t * ln_factor(n).exp()).ln();
+        }
+        // n/(n + t^2) is Beta(n/2, 1/2), for t of either sign.
+        let shapes = [0.5 * n, Real::new(0.5)];
+        let parts = [n / (n + square), square / (n + square)];
+        let ln_beta = beta::ln_beta(shapes[0], shapes[1]);
+        let (beyond, _) = ln_beta_parts(shapes, parts, ln_beta);
+        let tail = beyond - std::f64::consts::LN_2;
+        if t > 0.0 { tail } else { ln_1m_exp(tail) }
     }
 }
 

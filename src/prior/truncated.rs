@@ -158,8 +158,10 @@ impl<K: Kind, D: Cumulative<K>> Prior<K> for Truncated<K, D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::prior::{Cauchy, Exponential, HalfCauchy, HalfNormal};
-    use crate::prior::{LogNormal, Normal, Uniform};
+    use crate::prior::{
+        Beta, Cauchy, Exponential, Gamma, HalfCauchy, HalfNormal,
+        InverseGamma, LogNormal, Normal, StudentT, Uniform,
+    };
     use crate::scalar::{Grad, Plain};
     use crate::seed::Seed;
 
@@ -190,6 +192,13 @@ mod tests {
         check(&HalfNormal::new(2.0));
         check(&Cauchy::new(1.0, 2.0));
         check(&HalfCauchy::new(2.0));
+        for shape in [0.4, 3.0, 60.0] {
+            check(&Gamma::new(shape, 2.0));
+            check(&InverseGamma::new(shape, 2.0));
+            check(&Beta::new(shape, 1.5));
+            check(&Beta::new(0.7, shape));
+            check(&StudentT::new(shape, 1.0, 2.0));
+        }
     }
 
     #[test]
@@ -227,15 +236,18 @@ mod tests {
         }
     }
 
-    #[test]
-    fn derivatives_are_those_of_differences() {
+    /// Of a distribution with two parameters, cut off from the third on, at
+    /// the fourth.
+    fn check_derivatives<D: Cumulative<Grad<4>>>(
+        of: impl Fn([Real<Grad<4>>; 2]) -> D,
+        at: [f64; 4],
+    ) {
         let log = |v: [f64; 4]| {
             let x: Vec<_> =
                 (0..4).map(|i| Real::<Grad<4>>::variable(v[i], i)).collect();
-            let normal = Normal::new(x[0], x[1]);
-            Truncated::new(normal, x[2], f64::INFINITY).log_density(x[3])
+            let cut = Truncated::new(of([x[0], x[1]]), x[2], f64::INFINITY);
+            cut.log_density(x[3])
         };
-        let at = [0.3, 1.2, -0.4, 0.9];
         for i in 0..4 {
             let moved = |h: f64| {
                 let mut v = at;
@@ -245,6 +257,20 @@ mod tests {
             let known = (moved(1e-5) - moved(-1e-5)) / 2e-5;
             // A central difference: 1e-10 of curvature, 1e-11 of round-off.
             assert!((log(at).partial(i) - known).abs() < 1e-8, "{i}");
+        }
+    }
+
+    #[test]
+    fn derivatives_are_those_of_differences() {
+        check_derivatives(|[a, b]| Normal::new(a, b), [0.3, 1.2, -0.4, 0.9]);
+        check_derivatives(|[a, b]| Gamma::new(a, b), [2.3, 1.2, 0.4, 0.9]);
+        let inverse = |[a, b]: [_; 2]| InverseGamma::new(a, b);
+        check_derivatives(inverse, [2.3, 1.2, 0.4, 0.9]);
+        check_derivatives(|[a, b]| Beta::new(a, b), [2.3, 1.2, 0.4, 0.9]);
+        for cut in [-0.7, 0.0, 0.5] {
+            let student = |[a, b]: [_; 2]| StudentT::new(a, b, 1.3);
+            check_derivatives(student, [3.3, cut, cut, 0.9]);
+            check_derivatives(student, [3.3, 0.2, cut, 0.9]);
         }
     }
 

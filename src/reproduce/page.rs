@@ -133,13 +133,13 @@ fn agreement(study: &PriorStudy, samples: usize) -> String {
             }
         }
     }
-    let none = || vec!["nothing".to_owned()];
-    let listed = |list: Vec<String>| {
-        if list.is_empty() { none() } else { list }.join(", ")
+    let listed = |list: Vec<String>| match list.is_empty() {
+        true => "none".to_owned(),
+        false => list.join(", "),
     };
     format!(
         "With xi ~ {}, within 3 standard errors of the paper's Table 5: {}; \
-         not: {}.",
+         beyond: {}.",
         study.priors.xi,
         listed(with),
         listed(without)

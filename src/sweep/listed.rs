@@ -117,14 +117,75 @@ fn is_new(path: &Path, met: &mut HashSet<PathBuf>) -> bool {
 const FILE: &str = "event.toml";
 
 fn matching(pattern: &str) -> Result<Vec<Listed>> {
-    let paths = glob::glob(pattern).map_err(|error| {
+    let wrong = |error: &dyn std::fmt::Display| {
         Error::input(format!("the pattern {}: {error}", quoted(pattern)))
-    })?;
-    let is_event = |path: &PathBuf| path.join(FILE).is_file() || is_file(path);
-    let paths = paths.filter_map(std::result::Result::ok).filter(is_event);
+    };
     let mut met = HashSet::new();
-    let once = paths.filter(|path| is_new(path, &mut met));
-    Ok(once.map(Listed::of).collect())
+    let paths: Vec<PathBuf> = if pattern.contains("**") {
+        // The crate would go round a circle of links until a path is full.
+        let parsed = glob::Pattern::new(pattern).map_err(|e| wrong(&e))?;
+        let (mut all, from) = (Vec::new(), before_wildcards(pattern));
+        is_new(&from, &mut met);
+        every_path(&from, &mut met, &mut all);
+        all.retain(|path| parsed.matches_path_with(path, WITHIN));
+        all
+    } else {
+        let paths = glob::glob(pattern).map_err(|e| wrong(&e))?;
+        let paths = paths.filter_map(std::result::Result::ok);
+        paths.filter(|path| is_new(path, &mut met)).collect()
+    };
+    let folders: HashSet<&Path> = paths
+        .iter()
+        .map(PathBuf::as_path)
+        .filter(|path| path.join(FILE).is_file())
+        .collect();
+    // With its folder an event is there already.
+    let is_there = |path: &Path| {
+        path.ends_with(FILE)
+            && path.parent().is_some_and(|p| folders.contains(p))
+    };
+    let is_event = |path: &&PathBuf| {
+        folders.contains(path.as_path()) || is_file(path) && !is_there(path)
+    };
+    let events = paths.iter().filter(is_event).cloned();
+    Ok(events.map(Listed::of).collect())
+}
+
+/// As shells match: `*` stays within a folder.
+const WITHIN: glob::MatchOptions = glob::MatchOptions {
+    case_sensitive: true,
+    require_literal_separator: true,
+    require_literal_leading_dot: false,
+};
+
+/// The folder before the first part of a pattern with a wildcard.
+fn before_wildcards(pattern: &str) -> PathBuf {
+    let has_wildcard = |part: &std::path::Component<'_>| {
+        part.as_os_str().to_string_lossy().contains(['*', '?', '['])
+    };
+    let parts = Path::new(pattern).components();
+    parts.take_while(|part| !has_wildcard(part)).collect()
+}
+
+/// All paths below a folder by their order, but for those met before; what
+/// cannot be read holds none.
+fn every_path(
+    folder: &Path,
+    met: &mut HashSet<PathBuf>,
+    all: &mut Vec<PathBuf>,
+) {
+    let here =
+        if folder.as_os_str().is_empty() { ".".as_ref() } else { folder };
+    let entries = fs::read_dir(here).into_iter().flatten().flatten();
+    let mut paths: Vec<PathBuf> =
+        entries.map(|entry| folder.join(entry.file_name())).collect();
+    paths.sort();
+    for path in paths {
+        if is_new(&path, met) {
+            all.push(path.clone());
+            every_path(&path, met, all);
+        }
+    }
 }
 
 fn is_file(path: &Path) -> bool {
@@ -243,7 +304,11 @@ mod tests {
         link(&folder.join("b"), "d");
         assert_eq!(names(&folder, &folder), ["a", "b/1", "b/2", "c"]);
         let all = names(&folder.join("**/*"), &folder);
-        assert_eq!(all.len(), 5, "{all:?}");
+        // Events in events too: a pattern says so.
+        assert_eq!(all.len(), 6, "{all:?}");
+        assert!(all.contains(&"c/corrected".to_owned()), "{all:?}");
+        let files = names(&folder.join("b/*/event.toml"), &folder);
+        assert_eq!(files, ["b/1/event.toml", "b/2/event.toml"]);
         fs::remove_dir_all(&far).unwrap();
         fs::remove_dir_all(&folder).unwrap();
     }

@@ -82,8 +82,9 @@ PartitionName=main Nodes=ALL Default=YES State=UP
 CONF
     chown munge: /run/munge
     pgrep munged > /dev/null || runuser -u munge -- munged
-    pgrep slurmctld > /dev/null || slurmctld
-    pgrep slurmd > /dev/null || slurmd
+    # What ran before this script is left running after it.
+    pgrep slurmctld > /dev/null || { slurmctld; started+=(slurmctld); }
+    pgrep slurmd > /dev/null || { slurmd; started+=(slurmd); }
     sleep 3
     scontrol update nodename="$host" state=resume > /dev/null 2>&1 || true
     sinfo
@@ -116,9 +117,9 @@ PYTHON
     "$out/venv/bin/python" "$out/by_dask.py"
 }
 
+started=()
 finish() {
-    pkill slurmd || true
-    pkill slurmctld || true
+    for daemon in "${started[@]}"; do pkill "$daemon" || true; done
     rm -rf "$out"
 }
 trap finish EXIT

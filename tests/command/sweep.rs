@@ -176,3 +176,86 @@ fn options_that_a_sweep_says_itself_are_refused() {
     assert!(!folder.join("out").exists());
     fs::remove_dir_all(&folder).unwrap();
 }
+
+#[test]
+fn what_would_fail_for_every_event_is_refused_once() {
+    let folder = fresh("once");
+    survey(&folder, 2);
+    let out = folder.join("out");
+    let refused = |list: &Path, words: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_couloir"));
+        command.args(["sweep", "--quiet", "--out"]).arg(&out).arg(list);
+        let found = command.args(words).output().unwrap();
+        assert_eq!(found.status.code(), Some(2), "{words:?}: {found:?}");
+        let said = String::from_utf8(found.stderr).unwrap();
+        assert_eq!(said.lines().count(), 1, "{said}");
+        assert!(!said.contains("tip: to pass"), "{said}");
+        said
+    };
+    let unknown = refused(&folder, &["--", "--nonsense"]);
+    assert!(unknown.contains("'--nonsense'"), "{unknown}");
+    let missing = refused(&folder, &["--verb=compare"]);
+    assert!(missing.contains("--model"), "{missing}");
+    let other = refused(&folder, &["--", "--draws=100"]);
+    assert!(other.contains("'--draws'"), "{other}");
+    let list = folder.join("list.csv");
+    for (head, said) in [("colour", "'--colour'"), ("out", "--out")] {
+        let rows = format!("event,{head}\nevent 00,\nevent 01,x\n");
+        fs::write(&list, rows).unwrap();
+        let column = refused(&list, &[]);
+        assert!(column.contains("list.csv: "), "{column}");
+        assert!(column.contains(said), "{column}");
+    }
+    assert!(!out.exists());
+    fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
+fn a_failure_says_the_same_wherever_the_survey_is() {
+    let folder = fresh("moved");
+    let (list, moved) = (folder.join("survey"), folder.join("moved"));
+    survey(&list, 3);
+    for of in 0..3 {
+        let bad = list.join(format!("event {of:02}/recording.csv"));
+        fs::write(bad, "t,velocity\n1,fast\n").unwrap();
+    }
+    // The same files, in folders of the same names.
+    let command = |within: &Path, list: &str, out: &Path| {
+        let mut command = command(Path::new(list), out, &[]);
+        command.current_dir(within).output().unwrap()
+    };
+    let here = command(&folder, "survey", &folder.join("here"));
+    let said = String::from_utf8(here.stdout).unwrap();
+    assert!(said.contains("3 failed, survey/event 00 first: rec"), "{said}");
+    assert!(said.contains("--retry"), "{said}");
+    fs::create_dir_all(&moved).unwrap();
+    fs::rename(&list, moved.join("survey")).unwrap();
+    command(&moved, "survey", &folder.join("there"));
+    assert_eq!(json(&folder.join("here")), json(&folder.join("there")));
+    fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
+fn comparisons_are_summed_up() {
+    let folder = fresh("compared");
+    let (list, out) = (folder.join("survey"), folder.join("out"));
+    survey(&list, 2);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_couloir"));
+    command.args(["sweep", "--quiet", "--verb=compare", "--out"]);
+    command.arg(&out).arg(&list).args(["--", "--draws=100"]);
+    command.args(["--model=coulomb, iid", "--model=voellmy, iid"]);
+    let found = command.output().unwrap();
+    assert_eq!(found.status.code(), Some(0), "{found:?}");
+    let document: Value = serde_json::from_str(&json(&out)).unwrap();
+    let models = document["models"].as_array().unwrap();
+    let of = |key: &str| -> f64 {
+        models.iter().map(|model| model[key].as_f64().unwrap()).sum()
+    };
+    assert_eq!((models.len(), of("selected")), (2, 2.0));
+    assert!((of("mean_probability") - 1.0).abs() < 1e-9);
+    let csv = fs::read_to_string(out.join("sweep.csv")).unwrap();
+    assert!(csv.contains("\"p(coulomb, iid)\""), "{csv}");
+    let said = String::from_utf8(found.stdout).unwrap();
+    assert!(said.contains("\nvoellmy, iid "), "{said}");
+    fs::remove_dir_all(&folder).unwrap();
+}

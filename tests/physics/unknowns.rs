@@ -275,3 +275,22 @@ fn systems_that_cannot_be_solved_are_rejected() {
         assert!(matches!(stop, Stop::Fail(_)));
     }
 }
+
+model! {
+    struct Successes { y: u64, trials: f64 }
+    p ~ Beta(2.0, 3.0);
+    likelihood { y ~ Binomial(trials, p); }
+}
+
+#[test]
+fn shares_of_trials_have_the_evidence_of_the_beta_binomial() {
+    // C(10, y) B(2 + y, 3 + 10 - y) / B(2, 3).
+    use statrs::function::beta::ln_beta;
+    use statrs::function::factorial::ln_binomial;
+    for y in [0, 7, 10] {
+        let (won, lost) = (y as f64, 10.0 - y as f64);
+        let known = ln_binomial(10, y) + ln_beta(2.0 + won, 3.0 + lost)
+            - ln_beta(2.0, 3.0);
+        check_evidence(&Successes::new(y, 10.0), known);
+    }
+}

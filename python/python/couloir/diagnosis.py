@@ -71,6 +71,23 @@ class Improvement:
 
 
 @dataclass(frozen=True)
+class Rival:
+    """Other terms that do nearly as well as those selected."""
+
+    names: list[str]
+    log10_bayes_factor: float
+
+
+@dataclass(frozen=True)
+class Withheld:
+    """What the evidence asks for, and makes the fit worse."""
+
+    names: list[str]
+    rmse_before: float
+    rmse_after: float
+
+
+@dataclass(frozen=True)
 class Diagnosis(Result):
     """What a model lacks, and what adding it brings."""
 
@@ -83,8 +100,11 @@ class Diagnosis(Result):
     selected: list[str]
     """What is added to the model."""
     selected_noise: str
+    withheld: Withheld | None
+    """What is not added, since the fit would be worse with it."""
     group: list[str]
     """What the recording cannot tell apart."""
+    rivals: list[Rival] = field(repr=False)
     mismatch: list[Mismatch] = field(repr=False)
     mechanisms: list[Mechanism] = field(repr=False)
     """Everything that was weighed, most probable first."""
@@ -145,6 +165,8 @@ def diagnose(
         ],
         mechanisms=[_judged(Mechanism, one) for one in known["mechanisms"]],
         noise=[_judged(Noise, one) for one in known["noise"]],
+        withheld=known["withheld"] and of(Withheld, known["withheld"]),
+        rivals=[of(Rival, one) for one in known["rivals"]],
         improvement=of(Improvement, known["improvement"]),
         parameters=parameters(known["parameters"]),
         **made,

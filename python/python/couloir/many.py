@@ -37,6 +37,8 @@ class Sweep:
     failed: int
     mechanisms: list[dict[str, Any]]
     """How often each was selected, and its mean probability."""
+    models: list[dict[str, Any]]
+    """The same of the models of comparisons."""
     failures: list[dict[str, Any]]
     """Messages, with the events that failed by each."""
     rows: list[dict[str, Any]] = field(repr=False)
@@ -61,16 +63,16 @@ def sweep(
 
     `events` is a list of event folders, or what the command takes: a folder
     of them, a pattern, a CSV file. With a `client` of Dask the events are
-    shared out as so many `shards`, 100 where not given but at most one each
-    event, and the workers must see the same folders.
+    shared out as so many `shards`, where not given 10 events or more in each
+    and 100 shards at most, and the workers must see the same folders.
     """
     folder = Path(out).absolute()
-    listed, count = _listed(events, folder)
+    listed = _listed(events, folder)
     begin = [f"--out={folder}", f"--verb={verb}", "--quiet"]
     begin += ["--retry"] if retry else []
     behind = [listed, "--", *words_of(options)]
     if client is not None:
-        number = shards if shards is not None else min(100, count)
+        number = shards if shards is not None else _shards(listed)
         parts = [
             [*begin, "--jobs=1", f"--shard={i}/{number}", *behind]
             for i in range(1, number + 1)
@@ -83,15 +85,20 @@ def sweep(
     document = json.loads((folder / "sweep.json").read_text())
     known = {k: document[k] for k in ("events", "done", "failed")}
     lists = {k: document[k] for k in ("mechanisms", "failures", "rows")}
+    lists["models"] = document.get("models", [])
     return Sweep(folder=folder, document=document, **known, **lists)
 
 
-def _listed(
-    events: Place | Sequence[Place], folder: Path
-) -> tuple[str, int]:
-    """The list as the command takes it, and how many events it may hold."""
+def _shards(listed: str) -> int:
+    """As many as there can be of 10 events or more, but not above 100: each
+    is a process, whose start takes as long as a quick calibration."""
+    return max(1, min(100, _couloir.events_of(listed) // 10))
+
+
+def _listed(events: Place | Sequence[Place], folder: Path) -> str:
+    """The list as the command takes it."""
     if isinstance(events, (str, os.PathLike)):
-        return os.path.abspath(os.fspath(events)), 100
+        return os.path.abspath(os.fspath(events))
     if isinstance(events, (bytes, Mapping)):
         raise wrong("events", events, "a path, or a list of event folders")
     paths = [os.path.abspath(os.fspath(event)) for event in events]
@@ -101,7 +108,7 @@ def _listed(
     path = folder / "events.csv"
     with path.open("w", newline="") as file:
         csv.writer(file).writerows([["event"], *([p] for p in paths)])
-    return str(path), len(paths)
+    return str(path)
 
 
 PROGRAM = "from couloir._command import main; raise SystemExit(main())"

@@ -5,7 +5,7 @@ use std::f64::consts::LN_10;
 use serde_json::{Map, Value, json};
 
 use crate::diagnosis::locate::FreeForce;
-use crate::diagnosis::tell::words::in_words;
+use crate::diagnosis::tell::words::{in_words, single_rival};
 use crate::diagnosis::{
     Baseline, Corrected, Diagnosis, Improvement, Judged, JudgedNoise,
     LawParameters, Mismatch, ParameterSummary, Rest, Rival,
@@ -92,6 +92,17 @@ fn judged_json(m: &Judged) -> Value {
 fn judged_noise_json(noise: &JudgedNoise) -> Value {
     let known = [noise.probability, noise.log10_bayes_factor];
     noise_json(&noise.name, known, &parameters_json(&noise.parameters))
+}
+
+/// Sets of terms that do nearly as well, and the single mechanism that the
+/// words name as the rival of a single one.
+fn rivals(d: &Diagnosis) -> Vec<Rival> {
+    let single = single_rival(d).filter(|_| d.selected.len() == 1);
+    let single = single.map(|m| Rival {
+        names: vec![m.name.clone()],
+        log10_bayes_factor: m.log10_bayes_factor,
+    });
+    d.rivals.iter().cloned().chain(single).collect()
 }
 
 fn rival_json(rival: &Rival) -> Value {
@@ -183,7 +194,7 @@ impl Diagnosis {
             })),
             "selected_noise": self.selected_noise,
             "group": self.group,
-            "rivals": list(&self.rivals, rival_json),
+            "rivals": list(&rivals(self), rival_json),
             "improvement": improvement_json(&self.improvement),
             "parameters": parameters_json(&self.parameters),
             "law": law_json(&self.law),

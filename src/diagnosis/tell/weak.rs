@@ -8,15 +8,6 @@ use crate::diagnosis::tell::phrases::{
 use crate::diagnosis::{BeforeAfter, Diagnosis};
 use crate::report::digits::significant;
 
-/// By what share an error must grow to be worse: below it a posterior mean of
-/// some hundred draws says nothing.
-const WORSE: f64 = 0.01;
-
-/// Whether an error grows by more than its own uncertainty.
-pub(crate) fn grows(pair: &BeforeAfter) -> bool {
-    pair.after > (1.0 + WORSE) * pair.before
-}
-
 /// The errors that grow although the evidence does, with what they are called.
 fn worse(d: &Diagnosis) -> Vec<(&'static str, BeforeAfter)> {
     let i = &d.improvement;
@@ -26,7 +17,7 @@ fn worse(d: &Diagnosis) -> Vec<(&'static str, BeforeAfter)> {
         ("that of the last 30 %, predicted from the rest,", i.heldout_rmse),
     ];
     let gains = is_corrected(d) && i.log10_bayes_factor > 0.0;
-    let told = all.into_iter().filter(|(_, pair)| gains && grows(pair));
+    let told = all.into_iter().filter(|(_, pair)| gains && pair.grows());
     told.collect()
 }
 

@@ -128,18 +128,30 @@ fn of_start(d: &Diagnosis) -> bool {
 
 /// Where simulation and recording differ, as a force.
 fn difference(d: &Diagnosis, m: &Mismatch) -> String {
-    let size = m.specific_force.abs();
     let sense = if m.specific_force > 0.0 { "less" } else { "more" };
     let law = friction(&d.baseline);
     format!(
         "{} the mass is braked by {} m/s²{} {sense} than {law} gives{}{}.",
         capital(&stretch(m)),
-        short(size, 2),
+        size(m),
         force_interval(m),
         as_if(m),
         parts(m),
     )
 }
+
+/// The force with as many digits as its interval has.
+fn size(m: &Mismatch) -> String {
+    let size = m.specific_force.abs();
+    let width = m.specific_force_q95 - m.specific_force_q05;
+    match width.is_finite() {
+        true => beside(size, width / WIDTH_OF_90),
+        false => short(size, 2),
+    }
+}
+
+/// How many sd the 90 % interval of a normal distribution is wide.
+const WIDTH_OF_90: f64 = 3.3;
 
 fn force_interval(m: &Mismatch) -> String {
     let (low, high) = (m.specific_force_q05, m.specific_force_q95);
@@ -149,7 +161,7 @@ fn force_interval(m: &Mismatch) -> String {
     // ParameterSummary as a size in the stated direction.
     let (low, high) =
         if m.specific_force > 0.0 { (low, high) } else { (-high, -low) };
-    let sd = (high - low) / 3.3;
+    let sd = (high - low) / WIDTH_OF_90;
     format!(" (90 % interval {} to {})", beside(low, sd), beside(high, sd))
 }
 
@@ -272,16 +284,20 @@ fn unexplained(d: &Diagnosis) -> String {
     )
 }
 
-/// The most probable of what was not selected.
-fn rival(d: &Diagnosis) -> String {
+/// The most probable of what was not selected, where it is no far cry.
+pub(super) fn single_rival(d: &Diagnosis) -> Option<&Judged> {
     let other = |m: &&Judged| !d.selected.contains(&m.name);
-    match d.mechanisms.iter().find(other) {
-        Some(m) if m.probability >= RIVAL => format!(
+    d.mechanisms.iter().find(other).filter(|m| m.probability >= RIVAL)
+}
+
+fn rival(d: &Diagnosis) -> String {
+    match single_rival(d) {
+        Some(m) => format!(
             "; {} is the rival ({})",
             called(m),
             probability(m.probability)
         ),
-        _ => "; no rival comes near".to_owned(),
+        None => "; no rival comes near".to_owned(),
     }
 }
 
@@ -431,9 +447,8 @@ fn swallowed(b: &Baseline) -> Option<(f64, &'static str, f64)> {
     let instrument = over(b.instrument, BEYOND_INSTRUMENT)
         .map(|times| (sd, "the instrument's error", times));
     instrument.or_else(|| {
-        over(b.innovation_sd, BEYOND_INNOVATIONS).map(|times| {
-            (sd, "what is new in them from value to value", times)
-        })
+        over(b.innovation_sd, BEYOND_INNOVATIONS)
+            .map(|times| (sd, "that of their innovations", times))
     })
 }
 

@@ -3,9 +3,9 @@
 //!
 //! With base q and posterior density p (unnormalised), the population passes
 //! through q^(1-t) p^t for t from 0 to 1: reweighted, resampled, moved. It
-//! survives several modes, since every particle keeps to its own and moves
-//! along the differences of others lead from one to the next (ter Braak
-//! 2006), and the mean weights give the evidence (Del Moral, Doucet, Jasra
+//! survives several modes: every particle keeps to its own, and a move along
+//! the difference of two others may lead from one mode to the next (ter Braak
+//! 2006). The mean weights give the evidence (Del Moral, Doucet, Jasra
 //! 2006). A first passage starts from the prior. A second starts from a
 //! mixture fitted to what the first found, with a share of the prior, and
 //! needs one or two steps where the first needs dozens: its evidence is that
