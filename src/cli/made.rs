@@ -118,8 +118,9 @@ fn refused(error: &clap::Error) -> Error {
     });
     // How a terminal would pass a word on is no advice here.
     let said = parts.map(str::trim).filter(|p| !p.starts_with("tip: to pass"));
-    let said: Vec<&str> = said.collect();
-    let said = said.join("; ");
+    let said = said.collect::<Vec<_>>().join("; ");
+    // A list of several things takes a line for each.
+    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
     Error::input(said.strip_prefix("error: ").unwrap_or(&said))
 }
 

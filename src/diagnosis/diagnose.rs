@@ -22,7 +22,9 @@ use crate::diagnosis::findings::{
     ParameterSummary, Rest, Rival, Verdict, Withheld,
 };
 use crate::diagnosis::hypothesis::{NONE, UNKNOWN};
-use crate::diagnosis::locate::{FreeForce, free_fit, left, own_draws};
+use crate::diagnosis::locate::{
+    FORMULA, FreeForce, free_fit, left, own_draws,
+};
 use crate::diagnosis::options::Options;
 use crate::diagnosis::tell::noise::is_other;
 use crate::diagnosis::tell::paste::corrected;
@@ -345,6 +347,10 @@ impl<P: Program> Subject<'_, P> {
         let noise = (is_whole && is_other(diagnosis))
             .then(|| diagnosis.selected_noise.clone());
         diagnosis.corrected = corrected(&added, noise, options, quantity);
+        if verdict == Verdict::Unexplained {
+            let line = format!("{UNKNOWN}: {FORMULA}");
+            diagnosis.corrected.equation.push(line);
+        }
         diagnosis.mismatch =
             mismatch(verdict, &terms, forces, &self.events, pictured);
         mark(diagnosis, &self.events);

@@ -37,7 +37,7 @@ fn the_words_of_a_patch() {
     for said in [
         "Physics is missing: Voellmy friction with iid errors",
         "(synthetic data)",
-        "From 132 to 187 m (8.1 to 10.6 s) the mass is braked by 0.9 m/s² \
+        "From 132 to 187 m (8.1 to 10.6 s) the mass is braked by 0.90 m/s² \
          (90 % interval 0.60 to 1.20) more than Voellmy friction gives, as \
          if mu were 0.14 higher there.",
         "A patch of higher friction explains this (probability 0.93); \

@@ -139,7 +139,7 @@ fn a_table_of_events_overrides_options() {
     assert_eq!(friction(&rows[1]), "voellmy");
     let why = |row: &Value| row["message"].as_str().unwrap().to_owned();
     assert!(why(&rows[2]).contains("voellmy"), "{}", why(&rows[2]));
-    assert!(why(&rows[3]).contains("missing"), "{}", why(&rows[3]));
+    assert!(why(&rows[3]).contains("does not exist"), "{}", why(&rows[3]));
     fs::remove_dir_all(&folder).unwrap();
 }
 

@@ -18,6 +18,8 @@ from couloir.diagnosis import (
     Mechanism,
     Mismatch,
     Noise,
+    Rival,
+    Withheld,
     diagnose,
 )
 from couloir.event import Event
@@ -42,8 +44,10 @@ __all__ = [
     "Mismatch",
     "Noise",
     "Parameter",
+    "Rival",
     "Simulation",
     "Sweep",
+    "Withheld",
     "calibrate",
     "diagnose",
     "import_log",

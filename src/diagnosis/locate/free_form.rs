@@ -20,6 +20,9 @@ pub(crate) const NOUN: &str =
 pub(crate) const SAYS: &str =
     "A force that none of the mechanisms describes acts on the mass.";
 
+/// What it adds to the equation of motion.
+pub(crate) const FORMULA: &str = "+ f(s), f free";
+
 /// A force of free form, in [`CELLS`] cells along an axis.
 #[derive(Debug, Clone)]
 pub(super) struct FreeForm {
@@ -93,7 +96,7 @@ impl Candidate for FreeForm {
     }
 
     fn formula(&self) -> String {
-        "+ f(s), f free".to_owned()
+        FORMULA.to_owned()
     }
 }
 

@@ -25,8 +25,8 @@ use crate::model::{Posterior, Program, With};
 use crate::physics::forces::Axis;
 use crate::seed::Seed;
 
+pub(super) use free_form::{FORMULA, NOUN, SAYS};
 use free_form::{FreeForm, range};
-pub(super) use free_form::{NOUN, SAYS};
 use look::{COARSE, FINE, Look, Sought, proposal};
 use marginal::Marginal;
 pub use process::CELLS;
