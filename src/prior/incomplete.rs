@@ -51,14 +51,15 @@ fn gamma_fraction<K: Kind>(a: Real<K>, x: Real<K>) -> Real<K> {
     let mut d = 1.0 / off_zero(b);
     let mut c = Real::new(1e300);
     let mut value = d;
-    for n in 1..TERMS {
-        let n = f64::from(n);
+    let least = least_terms(&[a]);
+    for k in 1..TERMS {
+        let n = f64::from(k);
         let term = n * (a - n);
         b += 2.0;
         d = 1.0 / off_zero(term * d + b);
         c = off_zero(b + term / c);
         value *= c * d;
-        if ((c * d).value() - 1.0).abs() < SMALL {
+        if k >= least && ((c * d).value() - 1.0).abs() < SMALL {
             break;
         }
     }
@@ -94,6 +95,7 @@ pub(super) fn beta_fraction<K: Kind>(
 ) -> Real<K> {
     let one = Real::new(1.0);
     let (mut value, mut c, mut d) = (one, one, Real::new(0.0));
+    let least = least_terms(&[a, b]);
     for k in 1..TERMS {
         let m = f64::from(k / 2);
         let term = if k % 2 == 1 {
@@ -104,11 +106,24 @@ pub(super) fn beta_fraction<K: Kind>(
         d = 1.0 / off_zero(1.0 + term * d);
         c = off_zero(1.0 + term / c);
         value *= c * d;
-        if ((c * d).value() - 1.0).abs() < SMALL {
+        if k >= least && ((c * d).value() - 1.0).abs() < SMALL {
             break;
         }
     }
     value
+}
+
+/// How many terms a fraction has at the least. For whole shapes a term is 0,
+/// which ends the fraction, but not its derivative along the shape.
+fn least_terms<K: Kind>(shapes: &[Real<K>]) -> u32 {
+    match shapes.iter().all(|shape| shape.is_constant()) {
+        true => 1,
+        false => {
+            let sum: f64 = shapes.iter().map(|shape| shape.value()).sum();
+            // Enough for 16 digits near the mean, where it is slowest.
+            (100.0 + 10.0 * sum.sqrt()).min(f64::from(TERMS - 1)) as u32
+        }
+    }
 }
 
 /// `x`, or a tiny number in place of 0.
@@ -141,7 +156,7 @@ mod tests {
 
     #[test]
     fn derivatives_are_differences() {
-        for shape in [0.3, 2.5, 40.0] {
+        for shape in [0.3, 1.0, 2.5, 4.0, 40.0] {
             for part in [0.2, 0.9, 1.4, 3.0] {
                 let at = [shape, part * shape, 1.0];
                 let of = |[a, x, _]: [_; 3]| ln_gamma_parts::<Grad<3>>(a, x);
@@ -149,7 +164,7 @@ mod tests {
                 check(|at| of(at).1, at);
             }
         }
-        for [a, b] in [[0.4, 2.0], [3.0, 0.5], [20.0, 30.0]] {
+        for [a, b] in [[0.4, 2.0], [3.0, 0.5], [2.0, 3.0], [20.0, 30.0]] {
             for x in [0.1, 0.4, 0.8] {
                 let of = |[a, b, x]: [Real<Grad<3>>; 3]| {
                     let ln_beta = ln_gamma(a) + ln_gamma(b) - ln_gamma(a + b);

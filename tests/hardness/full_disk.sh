@@ -43,13 +43,21 @@ run() {
         import) "$couloir" -q import --smooth "2$2" --out "$out" "$log" ;;
         sweep) "$couloir" -q sweep --verb calibrate --out "$out" "$event" \
             -- --quick --seed="$2" ;;
+        population) "$couloir" -q population --seed "$2" --out "$out" \
+            "$work/swept" ;;
+        challenge) "$couloir" -q challenge --quick --cases 1 --seed "$2" \
+            --out "$out" ;;
+        reproduce) "$couloir" -q reproduce --samples 1 --seed "$2" \
+            --out "$out" ;;
     esac
 }
 
-# Every file below the results with its checksum. What takes time, and the
-# journals of a sweep, which only ever grow, are looked at elsewhere.
+# Every file below the results with its checksum. What takes time, the
+# journals of a sweep, which only ever grow, and what a run is gone on from are
+# looked at elsewhere.
 sums() {
-    (cd "$disk/out" && find . -type f ! -path './results/*' -print0 \
+    (cd "$disk/out" && find . -type f ! -path './results/*' \
+        ! -name .couloir-checkpoint -print0 \
         | sort -z | xargs -0 --no-run-if-empty sha256sum)
 }
 
@@ -99,10 +107,22 @@ fail() {
     failed=$((failed + 1))
 }
 
-for command in calibrate diagnose compare simulate import sweep; do
+# Five posteriors for a population, of one event by five seeds.
+printf 'event,seed\nevent,1\nevent,2\nevent,3\nevent,4\nevent,5\n' \
+    > "$work/list.csv"
+"$couloir" -q sweep --verb calibrate --out "$work/swept" "$work/list.csv" \
+    -- --quick > /dev/null
+
+# How many KiB are left, and the same for what takes seconds each time.
+rooms="0 4 8 12 16 20 24 28 32 40 48 56 64 80 96 112 128 160 192 224 256 320 \
+    384 448 512 640 768 896 1024 1536 2048 4096"
+few="0 4 16 32 64 128 512 4096"
+for command in ${COULOIR_COMMANDS:-calibrate diagnose compare simulate import \
+    sweep population challenge reproduce}; do
     old=0 new=0 behind=0
-    for room in 0 4 8 12 16 20 24 28 32 40 48 56 64 80 96 112 128 160 192 \
-        224 256 320 384 448 512 640 768 896 1024 1536 2048 4096; do
+    these=$rooms
+    case $command in challenge | reproduce) these=$few ;; esac
+    for room in $these; do
         once "$command" "$room"
     done
     echo "$command: $((old + new)) disks; the old results are whole on $old," \
