@@ -22,7 +22,8 @@ pub(crate) fn breaks_line(c: char) -> bool {
 }
 
 /// The name that a misspelt one is closest to, if any is close: the case
-/// aside, at most one letter in three is wrong, and one more.
+/// aside, at most one letter in three is wrong, and one more, but never more
+/// than half of them.
 pub(crate) fn nearest<'n>(found: &str, known: &[&'n str]) -> Option<&'n str> {
     if found.len() > LONGEST {
         return None;
@@ -32,7 +33,11 @@ pub(crate) fn nearest<'n>(found: &str, known: &[&'n str]) -> Option<&'n str> {
         .iter()
         .map(|name| (edits(&found, &name.to_lowercase()), *name))
         .min();
-    near.filter(|(edits, name)| *edits <= 1 + name.len() / 3).map(|n| n.1)
+    let is_near = |(edits, name): &(usize, &str)| {
+        let letters = found.chars().count().max(name.chars().count());
+        *edits <= 1 + name.len() / 3 && 2 * *edits <= letters
+    };
+    near.filter(is_near).map(|n| n.1)
 }
 
 /// How many letters to insert, delete or change between two words
@@ -75,6 +80,9 @@ mod tests {
         assert_eq!(nearest("depht", &known), Some("depth"));
         assert_eq!(nearest("sped", &known), Some("Speed"));
         assert_eq!(nearest("banana", &known), None);
+        assert_eq!(nearest("Truncated", &["Cauchy", "Normal"]), None);
+        assert_eq!(nearest("y", &["x", "z"]), None);
+        assert_eq!(nearest("ii", &["iid"]), Some("iid"));
         assert_eq!(nearest(&"coulomb".repeat(9), &known), None);
     }
 }

@@ -16,7 +16,7 @@ use crate::report::digits::share_interval;
 use crate::report::svg::{
     Bin, Matrix, Picture, matrix as matrix_picture, reliability,
 };
-use crate::report::{figure, standalone};
+use crate::report::{Origin, figure, how_computed, standalone};
 
 /// `81 % (76 to 85 %; 162 of 200)`.
 fn told(share: &Share) -> String {
@@ -136,7 +136,13 @@ fn outside(s: &Score) -> Option<String> {
 }
 
 /// `challenge.html`. `seed` is that of the cases.
-pub fn page(scored: &Scored, mix: Mix, errors: Errors, seed: u64) -> String {
+pub fn page(
+    scored: &Scored,
+    mix: Mix,
+    errors: Errors,
+    seed: u64,
+    origin: &Origin,
+) -> String {
     let recordings = match mix {
         Mix::One => "one recording each",
         Mix::Two => "two recordings each, from different starts",
@@ -167,8 +173,16 @@ pub fn page(scored: &Scored, mix: Mix, errors: Errors, seed: u64) -> String {
                   value: constant slopes for a release elsewhere, for a \
                   bend's load, and under Coulomb friction for cohesion, \
                   scale, drift and slope." }
+        (computed(origin, seed))
     };
     standalone("couloir challenge", &body)
+}
+
+/// What the cases come from: a seed, and no file.
+fn computed(origin: &Origin, seed: u64) -> Markup {
+    let mut facts = origin.facts();
+    facts.push(("seed".to_owned(), seed.to_string()));
+    how_computed(&facts, &[])
 }
 
 fn known(class: Class) -> bool {
@@ -356,7 +370,11 @@ fn place(i: &Interval) -> String {
 }
 
 /// The page of the power study: what each effect needs to be seen.
-pub fn power_page(tables: &[PowerTable], seed: u64) -> String {
+pub fn power_page(
+    tables: &[PowerTable],
+    seed: u64,
+    origin: &Origin,
+) -> String {
     let body = html! {
         h1 { "What each effect needs to be seen" }
         p.sub { span.synthetic { "synthetic data" } " seed " (seed) }
@@ -364,6 +382,7 @@ pub fn power_page(tables: &[PowerTable], seed: u64) -> String {
         p.note { "Per cent of the cases in which anything was reported, in \
                   brackets in which the effect was in the group; by the \
                   effect's size and the standard deviation of the noise." }
+        (computed(origin, seed))
     };
     standalone("couloir challenge: power", &body)
 }
@@ -422,7 +441,9 @@ mod tests {
 
     #[test]
     fn the_page_shows_names_counts_and_failures() {
-        let html = page(&some(), Mix::One, Errors::Real, 7);
+        let command = "couloir challenge --seed 7".to_owned();
+        let origin = Origin { command, ..Origin::default() };
+        let html = page(&some(), Mix::One, Errors::Real, 7, &origin);
         for part in [
             "id=\"confusion\"",
             "id=\"calibration\"",
@@ -430,6 +451,8 @@ mod tests {
             "friction-patch of 0.25, 100 to 150 m",
             "called ar(1) in all",
             "seed 7",
+            "<dd>couloir challenge --seed 7</dd>",
+            "<dt>program</dt>",
         ] {
             assert!(html.contains(part), "{part}");
         }
@@ -442,8 +465,11 @@ mod tests {
         outcomes[1].answer = Default::default();
         let score = Score::of(&outcomes);
         let scored = Scored { outcomes, score };
-        let html = page(&scored, Mix::Two, Errors::Simple, 1);
+        let origin = Origin::default();
+        let html = page(&scored, Mix::Two, Errors::Simple, 1, &origin);
         assert!(html.len() > 1000);
-        assert!(power_page(&[], 1).contains("What each effect needs"));
+        let power = power_page(&[], 1, &origin);
+        assert!(power.contains("What each effect needs"));
+        assert!(power.contains("<dt>program</dt>"));
     }
 }

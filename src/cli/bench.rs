@@ -6,7 +6,7 @@ use serde_json::json;
 use super::answer::{Answer, pretty, wrapped};
 use super::progress::Told;
 use super::results::Output;
-use super::study::Read;
+use super::study::{Read, priors_of};
 use super::{Subject, Work, width};
 use crate::draws::summarise;
 use crate::error::Result;
@@ -45,10 +45,16 @@ impl Row {
 }
 
 impl Arguments {
-    pub(super) fn run(&self, laws: &Laws, told: &Told) -> Result<Answer> {
+    pub(super) fn run(
+        &self,
+        laws: &Laws,
+        told: &Told,
+        typed: &str,
+    ) -> Result<Answer> {
         let results =
             self.output.ready(&["bench.json"], self.subject.paths())?;
         let Read { model, said, .. } = self.subject.named(laws)?;
+        let origin = self.subject.origin(typed)?;
         let posterior = Posterior::new(&model)?;
         let mut rows = Vec::new();
         for entry in BACKENDS {
@@ -60,6 +66,8 @@ impl Arguments {
         told.finish();
         let name = model.event().name();
         let mut document = self.document(name, &rows);
+        document["priors"] = priors_of(&model).into();
+        origin.write_to(&mut document);
         said.write_to(&mut document);
         let document = pretty(&document);
         let wrote =

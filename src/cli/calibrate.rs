@@ -23,7 +23,7 @@ use crate::infer::{Progress, Quiet, Suited, suited};
 use crate::model::{Assembled, Posterior};
 use crate::physics::friction::Laws;
 use crate::report::{
-    Origin, calibration_json, in_words, noises, page, picture, pictures, table,
+    calibration_json, in_words, noises, page, picture, pictures, table,
 };
 use crate::seed::Seed;
 use crate::sweep::DRAWS;
@@ -154,10 +154,9 @@ impl Arguments {
             read.said.note([QUICK.to_owned()]);
         }
         // Summed before the work, as they were read.
-        let inputs = subject.inputs()?;
+        let origin = subject.origin(typed)?;
         let mut found = self.calibrated(read, progress)?;
-        let command = typed.to_owned();
-        found.found.report.origin = Origin { command, inputs };
+        found.found.report.origin = origin;
         Ok(found)
     }
 

@@ -27,6 +27,7 @@ use crate::io::parse_event;
 use crate::model::Assembled;
 use crate::physics::forces::Axis;
 use crate::physics::friction::Laws;
+use crate::report::Origin;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -35,7 +36,7 @@ pub(super) struct Arguments {
     #[arg(long, default_value_t = 200, value_parser = at_least_one)]
     cases: usize,
     /// Seed of every random draw
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = super::seed)]
     seed: u64,
     /// How many recordings, from different starts, share an effect: 1 or 2
     #[arg(long, default_value_t = 1, value_parser = one_or_two)]
@@ -72,10 +73,17 @@ const SECONDS: [f64; 2] = [8.0, 20.0];
 const QUICK_SECONDS: [f64; 2] = [2.0, 5.0];
 
 impl Arguments {
-    pub(super) fn run(&self, told: &Told) -> Result<answer::Answer> {
+    pub(super) fn run(
+        &self,
+        told: &Told,
+        typed: &str,
+    ) -> Result<answer::Answer> {
+        // It makes what it reads, by the seed.
+        let command = typed.to_owned();
+        let origin = Origin { command, ..Origin::default() };
         match &self.power {
-            Some(mechanism) => self.study(mechanism, told),
-            None => self.score(told),
+            Some(mechanism) => self.study(mechanism, &origin, told),
+            None => self.score(&origin, told),
         }
     }
 
@@ -107,15 +115,20 @@ impl Arguments {
         scored
     }
 
-    fn score(&self, told: &Told) -> Result<answer::Answer> {
+    fn score(&self, origin: &Origin, told: &Told) -> Result<answer::Answer> {
         let files = ["challenge.html", "challenge.json"];
         let results = Results::ready(self.out.as_deref(), &files, &[])?;
         let all = cases(self.cases, self.seed, self.mix(), self.errors)?;
         let kept = self.kept(told)?;
         let scored = self.scored(&all, kept.as_ref(), told)?;
-        let json = pretty(&challenge_json(&scored));
+        let mut document = challenge_json(&scored);
+        document["seed"] = self.seed.into();
+        document["quick"] = self.quick.into();
+        origin.write_to(&mut document);
+        let json = pretty(&document);
         let wrote = results.write(|| {
-            let page = page(&scored, self.mix(), self.errors, self.seed);
+            let (mix, errors) = (self.mix(), self.errors);
+            let page = page(&scored, mix, errors, self.seed, origin);
             Ok(files.into_iter().zip([page, json.clone()]).collect())
         });
         conclude(kept, &wrote);
@@ -129,7 +142,12 @@ impl Arguments {
         Ok(answer::Answer::from(text).after(wrote))
     }
 
-    fn study(&self, mechanism: &str, told: &Told) -> Result<answer::Answer> {
+    fn study(
+        &self,
+        mechanism: &str,
+        origin: &Origin,
+        told: &Told,
+    ) -> Result<answer::Answer> {
         let results =
             Results::ready(self.out.as_deref(), &["power.html"], &[])?;
         let count = self.cases.div_ceil(SIZES.len() * NOISES.len());
@@ -138,7 +156,7 @@ impl Arguments {
         let scored = self.scored(&all, kept.as_ref(), told)?;
         let tables: Vec<PowerTable> = PowerTable::of(&scored.outcomes);
         let wrote = results.write(|| {
-            Ok(vec![("power.html", power_page(&tables, self.seed))])
+            Ok(vec![("power.html", power_page(&tables, self.seed, origin))])
         });
         conclude(kept, &wrote);
         let text: String = tables.iter().map(PowerTable::markdown).collect();

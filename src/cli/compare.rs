@@ -2,22 +2,25 @@
 //! they predict.
 
 use clap::Args;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::answer::{Answer, pretty, wrapped};
 use super::predictive::{self, Predicted};
 use super::progress::Told;
 use super::results::Output;
 use super::said::Said;
-use super::study::{NoDepth, assemble};
+use super::study::{NoDepth, assemble, priors_of};
 use super::{Subject, Work, at_least_one, backend_giving, width};
 use crate::draws::{Lfo, Loo};
 use crate::elpd;
 use crate::error::{Error, Result};
 use crate::infer::{Backend, Evidence, Inference, Progress, infer};
 use crate::model::{Assembled, Posterior};
+use crate::noise;
 use crate::physics::friction::Laws;
+use crate::report::Origin;
 use crate::seed::Seed;
+use crate::spelling::quoted;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -57,6 +60,7 @@ struct Compared {
     friction: String,
     noise: String,
     mechanisms: Vec<String>,
+    priors: Map<String, Value>,
     evidence: Evidence,
     loo: Loo,
     lfo: Option<Lfo>,
@@ -78,6 +82,7 @@ impl Compared {
         let mut document = json!({
             "friction": self.friction,
             "noise": self.noise,
+            "priors": self.priors,
             "log_evidence": {
                 "value": self.evidence.log,
                 "se": self.evidence.se,
@@ -94,6 +99,14 @@ impl Compared {
     }
 }
 
+/// A comparison with what it is of.
+struct Found {
+    event: String,
+    origin: Origin,
+    compared: Vec<Compared>,
+    said: Said,
+}
+
 /// By leave-one-out.
 fn left_out(compared: &[Compared]) -> Vec<Predicted<'_>> {
     compared.iter().map(|c| Predicted::left_out(c.name(), &c.loo)).collect()
@@ -108,19 +121,22 @@ fn ahead(compared: &[Compared]) -> Vec<Predicted<'_>> {
 }
 
 impl Arguments {
-    pub(super) fn run(&self, laws: &Laws, told: &Told) -> Result<Answer> {
+    pub(super) fn run(
+        &self,
+        laws: &Laws,
+        told: &Told,
+        typed: &str,
+    ) -> Result<Answer> {
         let files = ["comparison.json"];
         let results = self.output.ready(&files, self.subject.paths())?;
-        let (event, compared, said) = self.found(laws, told)?;
+        let found = self.found(laws, told, typed)?;
         told.finish();
-        let mut document = self.json(&event, &compared);
-        said.write_to(&mut document);
-        let document = pretty(&document);
+        let document = pretty(&self.json(&found));
         let wrote =
             results.write(|| Ok(vec![("comparison.json", document.clone())]));
         let text = match self.output.json {
             true => document,
-            false => tell(&event, &compared) + &said.lines(),
+            false => tell(&found.event, &found.compared) + &found.said.lines(),
         };
         Ok(Answer::from(text).after(wrote))
     }
@@ -131,18 +147,17 @@ impl Arguments {
         laws: &Laws,
         progress: &dyn Progress,
     ) -> Result<Value> {
-        let (event, compared, said) = self.found(laws, progress)?;
-        let mut document = self.json(&event, &compared);
-        said.write_to(&mut document);
-        Ok(document)
+        self.found(laws, progress, "").map(|found| self.json(&found))
     }
 
-    /// The event's name, its models compared, and what is said of it.
+    /// The event's models, compared. All that can be wrong with one of them
+    /// is told before any is worked on.
     fn found(
         &self,
         laws: &Laws,
         progress: &dyn Progress,
-    ) -> Result<(String, Vec<Compared>, Said)> {
+        typed: &str,
+    ) -> Result<Found> {
         if self.models.len() < 2 {
             return Err(Error::input(
                 "a comparison needs two models or more: give --model \
@@ -152,35 +167,36 @@ impl Arguments {
         let file = self.subject.load(laws)?;
         let event = file.event.name().to_owned();
         let mut said = Said::of(&file);
-        let compared = self
-            .models
+        let origin = self.subject.origin(typed)?;
+        let models = self.models.iter().map(|text| self.model(text, laws));
+        let compared = models
+            .collect::<Result<Vec<_>>>()?
             .iter()
-            .map(|text| self.compared(text, laws, progress))
+            .map(|model| self.compared(model, progress))
             .collect::<Result<Vec<_>>>()?;
         let depth = NoDepth::of(&file);
         for c in &compared {
             said.note(depth.note(&c.friction, laws));
         }
-        Ok((event, compared, said))
+        Ok(Found { event, origin, compared, said })
     }
 
     fn compared(
         &self,
-        text: &str,
-        laws: &Laws,
+        model: &Assembled,
         progress: &dyn Progress,
     ) -> Result<Compared> {
-        let model = self.model(text, laws)?;
-        let posterior = Posterior::new(&model)?;
+        let posterior = Posterior::new(model)?;
         let backend = self.work.backend(&self.backend)?;
         let seed = Seed::new(self.work.seed);
         let found = infer(backend.as_ref(), &posterior, seed, progress)?;
         let (evidence, loo) = self.judged(&found, &posterior)?;
-        let lfo = self.predicted_ahead(&model, backend.as_ref(), progress)?;
+        let lfo = self.predicted_ahead(model, backend.as_ref(), progress)?;
         Ok(Compared {
             friction: model.friction(),
             noise: model.noise(),
             mechanisms: model.labels(),
+            priors: priors_of(model),
             evidence,
             loo,
             lfo,
@@ -200,13 +216,14 @@ impl Arguments {
             )));
         };
         let mechanisms = parts.next().map(named);
-        assemble(
-            self.subject.load(laws)?,
-            laws,
-            Some(friction.trim().to_owned()),
-            Some(noise.trim().to_owned()),
-            mechanisms,
-        )
+        let mut file = self.subject.load(laws)?;
+        let own = || -> Result<Assembled> {
+            file.friction = laws.parse(friction.trim())?;
+            file.noise = noise::parse(noise.trim())?;
+            assemble(file, laws, None, None, mechanisms)
+        };
+        let at = format!("--model {}", quoted(text));
+        own().map_err(|error| error.within(at))
     }
 
     /// The evidence and the leave-one-out prediction of what was found.
@@ -244,7 +261,9 @@ impl Arguments {
             .map_err(|error| error.within("--lfo"))
     }
 
-    fn json(&self, event: &str, compared: &[Compared]) -> serde_json::Value {
+    /// `comparison.json`.
+    fn json(&self, found: &Found) -> Value {
+        let Found { event, origin, compared, said } = found;
         let mut models: Vec<_> =
             compared.iter().map(|c| c.document(&compared[0])).collect();
         let (loo, lfo) = (left_out(compared), ahead(compared));
@@ -254,13 +273,16 @@ impl Arguments {
                 model[key] = part;
             }
         }
-        json!({
+        let mut document = json!({
             "schema": 1,
             "event": event,
             "backend": self.backend,
             "seed": self.work.seed,
             "models": models,
-        })
+        });
+        origin.write_to(&mut document);
+        said.write_to(&mut document);
+        document
     }
 }
 

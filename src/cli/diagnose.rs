@@ -26,7 +26,9 @@ use crate::draws::{Draws, summarise};
 use crate::error::{Error, Result};
 use crate::export::{InferenceData, of_draws};
 use crate::infer::{Backend, LaplaceMixture, Progress, Quiet};
+use crate::io::place;
 use crate::model::Assembled;
+use crate::observe::Series;
 use crate::physics::friction::Laws;
 use crate::report::{CalibrationReport, Origin};
 
@@ -65,7 +67,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     quick: bool,
     /// Seed of every random draw
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = super::seed)]
     seed: u64,
     #[command(flatten)]
     strict: Strict,
@@ -197,7 +199,8 @@ impl Arguments {
         let halved = self.subjects(&self.thin.halved());
         let halved =
             self.check_rate.then(|| read_all(&halved, laws)).transpose()?;
-        let said = Said::of_all(read.iter().map(|one| &one.said));
+        let mut said = Said::of_all(read.iter().map(|one| &one.said));
+        said.warnings.splice(..0, same_recordings(subjects, &read));
         // Summed before the work, as they were read.
         let sums =
             subjects.iter().map(Subject::inputs).collect::<Result<_>>()?;
@@ -266,6 +269,22 @@ impl Arguments {
 
 fn read_all(subjects: &[Subject], laws: &Laws) -> Result<Vec<Read>> {
     subjects.iter().map(|event| event.read(laws)).collect()
+}
+
+/// A warning where a recording is given twice, by whatever path.
+fn same_recordings(subjects: &[Subject], read: &[Read]) -> Option<String> {
+    let of = |one: &Read| one.model.event().recordings().next().cloned();
+    let all: Vec<Option<Series>> = read.iter().map(of).collect();
+    let again = |i: usize| (0..i).find(|k| all[*k] == all[i]);
+    let (i, k) = (0..all.len()).find_map(|i| Some((i, again(i)?)))?;
+    let path = |at: usize| subjects[at].paths().first();
+    let [first, second] = [k, i].map(|at| path(at).map(|path| place(path)));
+    Some(format!(
+        "{} and {} have the same recording: taken for two, it makes all that \
+         is said surer than it is; give each recording once",
+        first.unwrap_or_default(),
+        second.unwrap_or_default()
+    ))
 }
 
 /// The checksums of what was read, after the events' labels where there are

@@ -8,6 +8,7 @@ use clap::error::ErrorKind;
 use serde_json::Value;
 
 use super::answer::typed;
+use super::refused::refused;
 use super::{Command, parsed, parsed_last};
 use crate::error::{Error, Result};
 use crate::export::InferenceData;
@@ -72,7 +73,7 @@ pub fn made(
     match &cli.command {
         Command::Calibrate(of) => of.made(laws, progress, &typed),
         Command::Diagnose(of) => of.made(laws, progress, &typed),
-        Command::Simulate(of) => of.made(laws),
+        Command::Simulate(of) => of.made(laws, &typed),
         #[cfg(feature = "import")]
         Command::Import(of) => of.made(),
         _ => Err(Error::input(format!(
@@ -105,23 +106,6 @@ pub(super) fn refusal(
 ) -> Option<(ErrorKind, Error)> {
     let error = parsed_last(laws, words).err()?;
     Some((error.kind(), refused(&error)))
-}
-
-/// What was wrong with the words, without advice for a terminal.
-fn refused(error: &clap::Error) -> Error {
-    if error.kind() == ErrorKind::DisplayHelp {
-        return Error::input("--help is for the command; expected a command");
-    }
-    let text = error.to_string();
-    let parts = text.split("\n\n").filter(|part| {
-        !part.starts_with("Usage:") && !part.starts_with("For more")
-    });
-    // How a terminal would pass a word on is no advice here.
-    let said = parts.map(str::trim).filter(|p| !p.starts_with("tip: to pass"));
-    let said = said.collect::<Vec<_>>().join("; ");
-    // A list of several things takes a line for each.
-    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
-    Error::input(said.strip_prefix("error: ").unwrap_or(&said))
 }
 
 #[cfg(test)]

@@ -23,6 +23,7 @@ mod pace;
 mod population;
 mod predictive;
 mod progress;
+mod refused;
 mod reproduce;
 mod results;
 mod resumed;
@@ -37,6 +38,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use self::answer::{Answer, typed};
@@ -142,10 +144,10 @@ struct Work {
     #[arg(long, value_name = "N", value_parser = at_least_one)]
     draws: Option<usize>,
     /// Steps before those, for tuning
-    #[arg(long, default_value_t = 5_000)]
+    #[arg(long, default_value_t = 5_000, value_parser = whole)]
     warmup: usize,
     /// Seed of every random draw
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = seed)]
     seed: u64,
     /// Whether little has to do.
     #[arg(skip)]
@@ -208,6 +210,19 @@ fn at_least_one(text: &str) -> Result<usize, String> {
     }
 }
 
+fn whole(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(n @ 0..=MOST) => Ok(n),
+        _ => Err(format!("expected a whole number from 0 to {MOST}")),
+    }
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    let expected =
+        |_| format!("expected a whole number from 0 to {}", u64::MAX);
+    text.parse().map_err(expected)
+}
+
 /// The name of a backend that gives what it is wanted for; `lacks` says what
 /// others do not give.
 fn backend_giving(
@@ -255,6 +270,11 @@ pub fn run(laws: &Laws, words: &[OsString]) -> u8 {
     let cli = match parsed(laws, words) {
         Ok(cli) => cli,
         Err(error) => {
+            // Help for want of a command is an error of its own kind.
+            let helps = ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
+            if error.use_stderr() && error.kind() != helps {
+                return refuse(&refused::refused(&error));
+            }
             // Where the terminal is gone, nobody is left to be told.
             let _ = error.print();
             return if error.use_stderr() { 2 } else { 0 };
@@ -303,17 +323,17 @@ impl Command {
     fn run(&self, laws: &Laws, told: &Told, typed: &str) -> Result<Answer> {
         match self {
             Self::Calibrate(arguments) => arguments.run(laws, told, typed),
-            Self::Compare(arguments) => arguments.run(laws, told),
+            Self::Compare(arguments) => arguments.run(laws, told, typed),
             Self::Diagnose(arguments) => arguments.run(laws, told, typed),
             Self::Sweep(arguments) => arguments.run(laws, told),
             Self::Population(arguments) => arguments.run(told),
-            Self::Challenge(arguments) => arguments.run(told),
-            Self::Simulate(arguments) => arguments.run(laws),
+            Self::Challenge(arguments) => arguments.run(told, typed),
+            Self::Simulate(arguments) => arguments.run(laws, typed),
             Self::New(arguments) => arguments.run().map(Answer::from),
             #[cfg(feature = "import")]
             Self::Import(arguments) => arguments.run(),
-            Self::Bench(arguments) => arguments.run(laws, told),
-            Self::Reproduce(arguments) => arguments.run(told),
+            Self::Bench(arguments) => arguments.run(laws, told, typed),
+            Self::Reproduce(arguments) => arguments.run(told, typed),
             Self::Completions(arguments) => arguments.run(command_of(laws)),
             Self::Man(arguments) => arguments.run(command_of(laws)),
         }
@@ -344,7 +364,8 @@ fn end(answer: &Answer) -> u8 {
 }
 
 /// The command, with the laws in the help of every `--friction`, a user's own
-/// included.
+/// included. A number below 0 is a value as any other, which what takes it
+/// refuses in its own words, and no option.
 fn command_of(laws: &Laws) -> clap::Command {
     let names: Vec<&str> = laws.iter().map(|law| law.name()).collect();
     let help = format!(
@@ -353,6 +374,11 @@ fn command_of(laws: &Laws) -> clap::Command {
         names.join(", ")
     );
     Cli::command().mut_subcommands(|subcommand| {
+        let subcommand = subcommand.mut_args(|a| {
+            let is_valued = a.get_action().takes_values();
+            let is_option = a.get_long().is_some();
+            a.allow_negative_numbers(is_valued && is_option)
+        });
         let takes_one =
             subcommand.get_arguments().any(|a| a.get_id() == "friction");
         if !takes_one {

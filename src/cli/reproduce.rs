@@ -19,10 +19,10 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR", value_parser = folder)]
     out: Option<PathBuf>,
     /// How many synthetic series
-    #[arg(long, default_value_t = 100)]
+    #[arg(long, default_value_t = 100, value_parser = super::whole)]
     samples: usize,
     /// Seed of every random draw
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = super::seed)]
     seed: u64,
     /// Print one JSON document instead of the words
     #[arg(long)]
@@ -34,14 +34,19 @@ const FILES: [&str; 4] =
     ["reproduction.html", "reproduction.json", "m0.html", "m1.html"];
 
 impl Arguments {
-    pub(super) fn run(&self, told: &Told) -> Result<Answer> {
+    pub(super) fn run(&self, told: &Told, typed: &str) -> Result<Answer> {
         let results = Results::ready(self.out.as_deref(), &FILES, &[])?;
         let out = self.out.as_deref();
         let run = format!("reproduce {} {}", self.samples, self.seed);
         let kept = checkpoint(out, &run, told)?;
         let heard = Resumed { heard: told, checkpoint: kept.as_ref() };
-        let found = reproduce(self.samples, self.seed, &heard)?;
+        let mut found = reproduce(self.samples, self.seed, &heard)?;
         told.finish();
+        // It makes what it reads, by the seed.
+        found.origin.command = typed.to_owned();
+        for report in &mut found.case.reports {
+            report.origin = found.origin.clone();
+        }
         let json = pretty(&reproduction_json(&found));
         let wrote = results.write(|| {
             let [m0, m1] = found.case.reports.each_ref().map(report::page);

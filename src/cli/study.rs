@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use serde_json::{Map, Value};
+
 use super::Subject;
 use super::said::Said;
 use crate::error::{Error, Result};
@@ -12,6 +14,7 @@ use crate::model::{Assembled, Program};
 use crate::noise::{self, is_inferred, stand_in};
 use crate::observe::{Event, Series};
 use crate::physics::friction::Laws;
+use crate::report::Origin;
 
 /// A model as it was asked for.
 pub(super) struct Read {
@@ -30,6 +33,13 @@ impl Subject {
     /// The checksums of the files that it is read from, by their names.
     pub(super) fn inputs(&self) -> Result<BTreeMap<String, String>> {
         io::inputs(self.event.as_deref())
+    }
+
+    /// Where a result of it comes from: the files as they are now, and the
+    /// command.
+    pub(super) fn origin(&self, typed: &str) -> Result<Origin> {
+        let (command, inputs) = (typed.to_owned(), self.inputs()?);
+        Ok(Origin { command, inputs })
     }
 
     /// The event, the embedded one where none was named.
@@ -65,21 +75,25 @@ impl Subject {
     pub(super) fn read(&self, laws: &Laws) -> Result<Read> {
         let (file, thinned) = self.load_told(laws)?;
         let own = self.friction.is_none() && self.noise.is_none();
-        let place = place(&file.path);
         let friction = self.friction.clone();
         let noise = self.noise_of(&file.event);
         let infers_noise = match &self.noise {
             Some(name) => is_inferred(name),
             None => file.infers_noise,
         };
-        let priors = file.priors.clone();
+        let (priors, at) = (file.priors.clone(), file.priors_at.clone());
         let mut said = Said::of(&file);
         let depth = NoDepth::of(&file);
         let model = assemble(file, laws, friction, noise, None)?;
         said.note(depth.note(&model.friction(), laws));
         said.note(thinned);
         if own {
-            model.check_priors(&priors).map_err(|e| e.within(place))?;
+            let first = model.unused(&priors).first().map(|k| (*k).to_owned());
+            let at = first.and_then(|key| at.get(&key));
+            model.check_priors(&priors).map_err(|error| match at {
+                Some(line) => error.within(line),
+                None => error,
+            })?;
         }
         Ok(Read { model, infers_noise, said })
     }
@@ -180,8 +194,8 @@ pub(super) fn assemble(
         return Err(Error::input("the event has no recording").within(place));
     }
     let (labels, at) = match mechanisms {
-        Some(labels) => (labels, "--model".to_owned()),
-        None => (file.mechanisms, file.mechanisms_at),
+        Some(labels) => (labels, None),
+        None => (file.mechanisms, Some(file.mechanisms_at)),
     };
     let extent = file.event.extent();
     let model = Assembled::new(file.event, friction, noise, &file.priors)
@@ -192,5 +206,16 @@ pub(super) fn assemble(
         .map(|label| find(label, &extent, &blocks))
         .collect::<Result<Vec<_>>>()
         .and_then(|found| model.with_mechanisms(found, &file.priors))
-        .map_err(|e| e.within(at))
+        .map_err(|error| match at {
+            Some(at) => error.within(at),
+            None => error,
+        })
+}
+
+/// The priors of a model's parameters as documents have them, by the
+/// parameters' names.
+pub(super) fn priors_of(model: &Assembled) -> Map<String, Value> {
+    let all = model.priors();
+    all.map(|(name, prior)| (name.to_owned(), prior.to_string().into()))
+        .collect()
 }

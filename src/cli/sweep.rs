@@ -396,6 +396,12 @@ fn shortened(mut result: Value) -> Value {
             members.retain(|name, _| KEPT.contains(&name.as_str()));
         }
     }
+    let models = result.get_mut("models").and_then(Value::as_array_mut);
+    for model in models.into_iter().flatten() {
+        if let Some(members) = model.as_object_mut() {
+            members.remove("priors");
+        }
+    }
     result
 }
 
@@ -443,5 +449,24 @@ impl Teller<'_> {
             ran.failed,
             duration(left)
         ));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::Origin;
+    use serde_json::json;
+
+    #[test]
+    fn what_a_command_gives_again_is_not_kept() {
+        let kept = json!({"seed": 1, "models": [{"noise": "iid"}]});
+        let mut whole = kept.clone();
+        whole["models"][0]["priors"] = json!({"mu": "Flat()"});
+        let sums = [("event.toml".to_owned(), "0f".to_owned())];
+        let command = "couloir compare".to_owned();
+        Origin { command, inputs: sums.into() }.write_to(&mut whole);
+        assert_ne!(whole, kept);
+        assert_eq!(shortened(whole), kept);
     }
 }

@@ -233,7 +233,7 @@ impl<P: Program> Subject<'_, P> {
         }
         self.write_out(&mut diagnosis, chosen.as_ref(), forces, options);
         diagnosis.forces = forces.clone();
-        diagnosis.doubts = diagnosis.warnings.clone();
+        diagnosis.doubt();
         diagnosis.weak = is_weak(&diagnosis);
         Ok(diagnosis)
     }

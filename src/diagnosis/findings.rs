@@ -78,6 +78,28 @@ pub struct Diagnosis {
     pub doubts: Vec<String>,
 }
 
+impl Diagnosis {
+    /// How many values there are for how many unknowns, where there are no
+    /// more of the ones than of the others: the model then explains them
+    /// whatever is missing.
+    pub(crate) fn too_few(&self) -> Option<String> {
+        let values: usize = self.pictured.iter().map(|p| p.values.len()).sum();
+        let unknowns = self.baseline.priors.len();
+        let many = if values == 1 { "" } else { "s" };
+        (values > 0 && values <= unknowns)
+            .then(|| format!("{values} value{many} for {unknowns} unknowns"))
+    }
+
+    /// Warns of too few values; its warnings are then reasons not to use it.
+    pub(super) fn doubt(&mut self) {
+        let few = self.too_few().map(|few| {
+            format!("so few values tell nothing of what is missing: {few}")
+        });
+        self.warnings.extend(few);
+        self.doubts = self.warnings.clone();
+    }
+}
+
 /// What evidence asks for and the fit speaks against.
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]

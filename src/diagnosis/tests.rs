@@ -103,6 +103,20 @@ fn every_verdict_has_its_words() {
 }
 
 #[test]
+fn of_so_few_values_nothing_is_said() {
+    let mut few = adequate();
+    assert!(in_words(&few)[0].starts_with("Nothing is missing"));
+    few.pictured.truncate(1);
+    let pictured = few.pictured.first_mut().unwrap();
+    pictured.values.truncate(1);
+    few.baseline.priors =
+        ["mu", "sigma2"].map(|name| (name.into(), "Flat()".into())).into();
+    let words = in_words(&few);
+    assert!(words[0].contains("cannot be told"), "{words:#?}");
+    assert!(words[0].ends_with("has 1 value for 2 unknowns."), "{words:#?}");
+}
+
+#[test]
 fn noise_that_swallowed_the_physics_is_said() {
     let rich = &all()[6];
     let words = in_words(rich).join(" ");

@@ -2,6 +2,7 @@
 
 use super::case::Case;
 use super::log::SpeedKind;
+use super::phase::SILENT;
 use crate::draws::median;
 
 /// A pause of so many times the usual step is a gap.
@@ -30,6 +31,7 @@ pub(super) fn doubts(case: &Case) -> Vec<String> {
         ends(case),
         rival(case),
         gaps(case),
+        silence(case),
         satellites(case),
         far(case),
         way(case),
@@ -104,6 +106,31 @@ fn gaps(case: &Case) -> Option<String> {
         steps[longest],
         times[longest]
     ))
+}
+
+/// A log that says nothing for long, before or after what is taken.
+fn silence(case: &Case) -> Option<String> {
+    let fixes = &case.moving.log.fixes;
+    let phase = case.moving.phase;
+    let step = |i: &usize| fixes[i + 1].time - fixes[*i].time;
+    let outside =
+        (0..fixes.len() - 1).filter(|i| *i < phase.first || *i >= phase.last);
+    let at = outside.max_by(|a, b| step(a).total_cmp(&step(b)))?;
+    let long = step(&at);
+    let bounds = match (at + 1 == phase.first, at == phase.last) {
+        (true, _) => "; what is taken begins behind that",
+        (_, true) => "; what is taken ends before that",
+        _ => "",
+    };
+    (long > SILENT).then(|| {
+        format!(
+            "The {} says nothing for {long:.1} s, from {:.1} s after its first \
+             row on{bounds}. If the mass moved then, a part of its motion is \
+             missing.",
+            case.moving.log.word(),
+            fixes[at].time
+        )
+    })
 }
 
 fn satellites(case: &Case) -> Option<String> {

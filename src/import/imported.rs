@@ -9,7 +9,7 @@ use super::options::Options;
 use super::work::work_out;
 use super::{event, picture};
 use crate::error::{Error, Result};
-use crate::io::parse_event;
+use crate::io::{parse_event, place};
 use crate::physics::friction::Laws;
 use crate::report::text::plain;
 
@@ -93,7 +93,7 @@ pub fn import_all(options: &Options) -> Result<Vec<Imported>> {
 /// What one recording ends in.
 fn of(case: Case, folder: String) -> Result<Imported> {
     let (first, last) = case.ends();
-    let lines = |all: Vec<String>| -> Vec<String> {
+    let told = |all: Vec<String>| -> Vec<String> {
         all.iter().map(|text| plain(text)).collect()
     };
     let mut imported = Imported {
@@ -105,10 +105,12 @@ fn of(case: Case, folder: String) -> Result<Imported> {
         begin: case.moving.begin(),
         length: last - first,
         said: Vec::new(),
-        doubts: lines(doubts(&case)),
+        doubts: told(doubts(&case)),
     };
-    imported.check()?;
-    imported.said = lines(said(case));
+    let rows = case.moving.rows();
+    let lines = rows.first().zip(rows.last()).map(|(a, b)| (a.row, b.row));
+    imported.check(&case.moving.log.path, lines.unwrap_or_default())?;
+    imported.said = told(said(case));
     Ok(imported)
 }
 
@@ -130,8 +132,8 @@ fn said(case: Case) -> Vec<String> {
 
 impl Imported {
     /// Makes sure that the event can be read as any other, and takes over
-    /// what reading it warns of.
-    fn check(&mut self) -> Result<()> {
+    /// what reading it warns of. It is made of these rows of a log.
+    fn check(&mut self, log: &Path, (from, to): (u64, u64)) -> Result<()> {
         let open = |name: &str| match name {
             "track.csv" => Ok((Cursor::new(&self.track), PathBuf::from(name))),
             "recording.csv" => {
@@ -142,10 +144,12 @@ impl Imported {
         let path = Path::new("event.toml");
         let file = parse_event(&self.event, path, open, &Laws::default())
             .map_err(|error| {
-                error.within(
-                    "the event that would be written; take another part of \
-                     the log with --from and --to, or other columns",
-                )
+                error.within(format!(
+                    "{}: the event that would be written of its rows {from} \
+                     to {to}; mend these, take another part of the log with \
+                     --from and --to, or other columns",
+                    place(log)
+                ))
             })?;
         self.doubts.extend(file.warnings.iter().map(|text| plain(text)));
         Ok(())

@@ -169,8 +169,17 @@ fn moving(
         text.as_deref().map(|text| log.moment(name, text)).transpose()
     };
     let (from, to) = (at("--from", &options.from)?, at("--to", &options.to)?);
+    if let Some((from, to)) = from.zip(to).filter(|(from, to)| from >= to) {
+        return Err(Error::input(format!(
+            "--from: is {from:.2} s after the first row of {}, and --to is \
+             {to:.2} s; expected a beginning before the end: change one of \
+             them",
+            place(&log.path)
+        )));
+    }
     let found = stretches(&times, speeds, options.threshold);
-    let (phase, others) = if from.is_some() || to.is_some() {
+    let is_asked = from.or(to).is_some();
+    let (phase, others) = if is_asked {
         (between(&times, from, to), Vec::new())
     } else {
         let others = found.as_ref().map(|f| f.others.clone());
@@ -181,7 +190,6 @@ fn moving(
     let Some(phase) = phase.filter(|_| rows >= FEWEST) else {
         return Err(too_few(options, log, speeds, rows));
     };
-    let is_asked = from.or(to).is_some();
     said.push(told_phase(options, log, &times, phase, is_asked));
     Ok((phase, others))
 }
@@ -194,13 +202,19 @@ fn too_few(
 ) -> Error {
     let top = speeds.iter().copied().fold(0.0, f64::max);
     let end = log.fixes.last().map_or(0.0, |fix| fix.time);
+    let mend = match options.from.is_some() || options.to.is_some() {
+        true => "change --from and --to".to_owned(),
+        false => format!(
+            "change --threshold ({} m/s), or give --from and --to",
+            options.threshold
+        ),
+    };
     Error::input(format!(
         "{}: {rows} rows are in the part that would be taken; expected at \
          least {FEWEST}: the {} lasts {end:.1} s and its top speed is \
-         {top:.2} m/s; change --threshold ({} m/s), or --from and --to",
+         {top:.2} m/s; {mend}",
         place(&log.path),
         log.word(),
-        options.threshold
     ))
 }
 

@@ -4,7 +4,7 @@
 pub(super) const REST: f64 = 1.0;
 
 /// A log that is silent for longer than this does not go on \[s\].
-const SILENT: f64 = 10.0;
+pub(super) const SILENT: f64 = 10.0;
 
 /// Rows of a log, both included; the first is t = 0.
 #[derive(Debug, Clone, Copy, PartialEq)]

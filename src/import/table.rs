@@ -11,7 +11,7 @@ use super::columns::{Column, Columns, Found};
 use super::log::{Fix, Frame, Log, SpeedKind};
 use super::role::Role;
 use crate::error::{Error, Result};
-use crate::io::{MOST_ROWS, place, quoted};
+use crate::io::{FASTEST, MOST_ROWS, is_mark, may_be_mark, place, quoted};
 
 /// Rows that may be passed over before the file is refused: a share of them,
 /// and a number.
@@ -93,6 +93,38 @@ pub(super) fn read(
 
 fn at(path: &Path, line: u64, what: &str) -> Error {
     Error::input(what).within(format_args!("{}:{line}", place(path)))
+}
+
+/// Whether a number stands for "not measured". Speeds are not below 0, so
+/// that any such mark is one; what has a sign may be as large in small units.
+fn is_for_none(role: Role, value: f64, factor: f64) -> bool {
+    match role {
+        Role::Speed | Role::GroundSpeed => {
+            is_mark(value) || (may_be_mark(value) && value * factor > FASTEST)
+        }
+        Role::Height | Role::North | Role::East | Role::Down => {
+            is_mark(value * factor)
+        }
+        _ => false,
+    }
+}
+
+/// Refuses a header that has a column twice of those that are read: which of
+/// the two is meant, nobody said.
+fn once_each(found: &Found, header: &[&str]) -> Result<(), String> {
+    let twice = found.values().find(|column| {
+        let own = header.get(column.at);
+        header.iter().filter(|cell| own == Some(*cell)).count() > 1
+    });
+    match twice {
+        None => Ok(()),
+        Some(column) => Err(format!(
+            "the header is {}, which has {} twice; expected each column that \
+             is read once: drop or rename one",
+            quoted(&header.join(",")),
+            quoted(header[column.at])
+        )),
+    }
 }
 
 /// The separator that the first line has most of.
@@ -182,6 +214,7 @@ impl<'r> Reader<'r> {
         let rivals = [Role::Speed.rivals(), Role::X.rivals()].concat();
         let used = [of_speed, of_place].concat();
         found.retain(|role, _| !rivals.contains(role) || used.contains(role));
+        once_each(&found, &header)?;
         Ok(Self { path, separator, found, kind, frame })
     }
 
@@ -329,6 +362,14 @@ impl<'r> Reader<'r> {
             return Ok(None);
         }
         match self.with_point(cell).parse::<f64>() {
+            Ok(value) if is_for_none(role, value, column.factor) => {
+                Err(format!(
+                    "{} is {value}; expected a measured value [{}], and this \
+                     is a mark for none: empty the cell, or drop the row",
+                    quoted(&column.name),
+                    column.unit
+                ))
+            }
             Ok(value) if value.abs() < 1e12 => Ok(Some(value * column.factor)),
             _ => Err(format!(
                 "{} is {}; expected a finite number [{}]: mend the cell, or \
@@ -505,6 +546,14 @@ mod tests {
     }
 
     #[test]
+    fn what_is_like_a_mark_is_read_where_it_may_be_measured() {
+        let text = "t,lon,lat,velN[mm/s],velE[mm/s],velD[mm/s],note,note\n\
+                    1,2,3,-999,-9999,0,a,b\n";
+        let speed = log(text, "").unwrap().fixes[0].speed.unwrap();
+        assert!((speed - 0.999_f64.hypot(9.999)).abs() < 1e-9, "{speed}");
+    }
+
+    #[test]
     fn a_bad_cell_is_named_by_its_line() {
         for (text, part) in [
             ("", "log.csv: is empty"),
@@ -514,6 +563,15 @@ mod tests {
             ("t,lon,lat\nnoon,1,2\n", "log.csv:2: \"t\" is \"noon\""),
             ("t,lon,lat\n1,79400,5\n", "log.csv:2: the place is 79400, 5"),
             ("t,lon,lat,v\n1,2,3,inf\n", "\"v\" is \"inf\""),
+            (
+                "t,lon,lat,v\n1,2,3,4\n2,2,3,-9999\n",
+                "log.csv:3: \"v\" is -9999; expected a measured value [m/s], \
+                 and this is a mark for none: empty the cell",
+            ),
+            ("t,lon,lat,v\n1,2,3,999\n", "csv:2: \"v\" is 999; expected"),
+            ("t,lon,lat,z\n1,2,3,-999\n", "csv:2: \"z\" is -999; expected"),
+            ("t,lon,lat,v,v\n1,2,3,4,5\n", "csv:1: the header is"),
+            ("t,lon,lat,v,v\n1,2,3,4,5\n", "which has \"v\" twice"),
         ] {
             let error = log(text, "").unwrap_err();
             assert!(error.is_input());

@@ -121,7 +121,11 @@ pub(super) fn recording_of(
     let (times, values) = (column(0), column(1));
     let read =
         Values { quantity, times: &times, values: &values, lines: &lines };
-    read.check().map_err(|(line, message)| table.at(line, message))?;
+    let wrong = |(line, message)| table.at(line, message);
+    read.check().map_err(wrong)?;
+    if given.len() == 3 {
+        read.check_errors(&column(2)).map_err(wrong)?;
+    }
     let series = Series::new(quantity, times, values).and_then(|series| {
         match given.len() {
             3 => series.with_standard_errors(column(2)),

@@ -185,8 +185,8 @@ impl<'d> Section<'d> {
         self.at(key, format!("is missing: {write}"))
     }
 
-    /// "event.toml:7: flow.depth".
-    pub(super) fn spot(&self, key: &str) -> String {
+    /// "event.toml:7".
+    pub(super) fn line_of(&self, key: &str) -> String {
         let document = self.document;
         let offset = self.entry(key).map_or(self.offset, |e| e.offset);
         let mut spot = place(document.path);
@@ -194,6 +194,12 @@ impl<'d> Section<'d> {
             let line = line_of(document.text.as_bytes(), offset);
             spot.push_str(&format!(":{line}"));
         }
+        spot
+    }
+
+    /// "event.toml:7: flow.depth".
+    pub(super) fn spot(&self, key: &str) -> String {
+        let spot = self.line_of(key);
         let plain = |c: char| c.is_ascii_alphanumeric() || "_-[].".contains(c);
         let key = match key.chars().all(plain) && key.len() <= 60 {
             true => key.to_owned(),

@@ -21,6 +21,21 @@ use crate::prior::AnyPrior;
 use crate::scalar::{Plain, Real};
 use crate::spelling::nearest;
 
+/// What may stand at the top of an event.toml.
+const KEYS: [&str; 8] = [
+    "name",
+    "event",
+    "track",
+    "release",
+    "flow",
+    "recording",
+    "model",
+    "priors",
+];
+
+/// No flow is as deep [m].
+const DEEPEST: f64 = 1000.0;
+
 /// The most bytes that an event.toml may have.
 pub(super) const MOST_BYTES: u64 = 1 << 20;
 
@@ -45,6 +60,8 @@ pub struct EventFile {
     /// Priors by the names of their parameters; whether the model has such
     /// parameters is not checked here.
     pub priors: BTreeMap<String, AnyPrior>,
+    /// How a message about each begins: the file and the line.
+    pub priors_at: BTreeMap<String, String>,
     /// Mechanisms that a diagnosis added, by their labels; whether there are
     /// such is not checked here.
     pub mechanisms: Vec<String>,
@@ -129,18 +146,10 @@ pub fn parse_event<R: Read>(
 ) -> Result<EventFile> {
     let document = Document::parse(text, path)?;
     let top = document.top();
-    top.only(&[
-        "name",
-        "event",
-        "track",
-        "release",
-        "flow",
-        "recording",
-        "model",
-        "priors",
-    ])?;
+    top.only(&KEYS)?;
     let model = Model::read(&top, laws)?;
-    let priors = read_priors(&top.section("priors")?)?;
+    let Priors { priors, at: priors_at } =
+        Priors::read(&top.section("priors")?)?;
     let mut notes = Vec::new();
     let event = read_event(&top, &open, &mut notes)?;
     let slope = top.section("track")?.number("slope")?;
@@ -157,6 +166,7 @@ pub fn parse_event<R: Read>(
         noise,
         infers_noise: is_inferred(&named),
         priors,
+        priors_at,
         mechanisms,
         mechanisms_at,
         path,
@@ -199,18 +209,22 @@ fn read_event<R: Read>(
     let series = series
         .with_window(window)
         .map_err(|error| recording.about("window", error))?;
-    let event = still.with_recording(series.clone()).map_err(|error| {
-        let too_long = error.to_string().contains("the track has only");
-        let fit = if too_long { would_fit(&still, &series) } else { "" };
-        let error = Error::input(format!("{error}{fit}"));
-        recording.about("file", error.within(place(&path)))
-    })?;
+    // Before anything that would follow from it.
     let track = top.section("track")?;
     let slope = track.number("slope")?;
-    match slope.and_then(|slope| slope_in_radians(&event, slope)) {
-        Some(message) => Err(track.at("slope", message)),
-        None => Ok(event),
+    let radians = slope.and_then(|s| slope_in_radians(&still, &series, s));
+    if let Some(message) = radians {
+        return Err(track.at("slope", message));
     }
+    still.with_recording(series.clone()).map_err(|error| {
+        let too_long = error.to_string().contains("the track has only");
+        let fit = match too_long {
+            true => would_fit(&still, &series, slope),
+            false => String::new(),
+        };
+        let error = Error::input(format!("{error}{fit}"));
+        recording.about("file", error.within(place(&path)))
+    })
 }
 
 fn read_quantity(recording: &Section) -> Result<Quantity> {
@@ -317,6 +331,16 @@ fn read_flow<R: Read>(
             format!("is {depth}; expected metres, more than 0"),
         ));
     }
+    if depth >= DEEPEST {
+        return Err(flow.at(
+            "depth",
+            format!(
+                "is {depth}; expected metres, and no flow has {DEEPEST} of \
+                 them: if these are millimetres, write depth = {}",
+                depth / 1000.0
+            ),
+        ));
+    }
     Ok(Depth::Even(depth))
 }
 
@@ -406,22 +430,41 @@ fn once_each(friction: LawSum) -> Result<LawSum> {
     }
 }
 
-/// Priors by parameter. A name of two parts, such as `coulomb.mu`, may stand
-/// bare or in quotes.
-fn read_priors(section: &Section) -> Result<BTreeMap<String, AnyPrior>> {
-    let mut priors = BTreeMap::new();
-    for key in section.keys() {
-        if !section.is_section(key) {
-            priors.insert(key.to_owned(), read_prior(section, key)?);
-            continue;
+/// Priors by parameter, and where each stands. A name of two parts, such as
+/// `coulomb.mu`, may stand bare or in quotes.
+#[derive(Default)]
+struct Priors {
+    priors: BTreeMap<String, AnyPrior>,
+    at: BTreeMap<String, String>,
+}
+
+impl Priors {
+    fn read(section: &Section) -> Result<Self> {
+        let mut all = Self::default();
+        for key in section.keys() {
+            if !section.is_section(key) {
+                all.take(section, key, key.to_owned())?;
+                continue;
+            }
+            let block = section.section(key)?;
+            for field in block.keys() {
+                all.take(&block, field, format!("{key}.{field}"))?;
+            }
         }
-        let block = section.section(key)?;
-        for field in block.keys() {
-            let prior = read_prior(&block, field)?;
-            priors.insert(format!("{key}.{field}"), prior);
-        }
+        Ok(all)
     }
-    Ok(priors)
+
+    fn take(
+        &mut self,
+        section: &Section,
+        key: &str,
+        name: String,
+    ) -> Result<()> {
+        let prior = read_prior(section, key)?;
+        self.at.insert(name.clone(), section.line_of(key));
+        self.priors.insert(name, prior);
+        Ok(())
+    }
 }
 
 fn read_prior(section: &Section, key: &str) -> Result<AnyPrior> {

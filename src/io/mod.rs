@@ -32,6 +32,8 @@ pub use event_file::{EventFile, load, parse_event};
 pub(crate) use foreign::{read_any_text, read_bytes};
 #[cfg(feature = "cli")]
 pub(crate) use inputs::{inputs, sha256};
+#[cfg(feature = "import")]
+pub(crate) use plausible::{FASTEST, is_mark, may_be_mark};
 #[cfg(feature = "cli")]
 pub(crate) use run_folder::{prepare_run, write_run, write_run_of};
 pub use template::new_event;

@@ -12,11 +12,27 @@ use crate::observe::Quantity;
 /// models.
 const MARKS: [f64; 5] = [-999.0, -9999.0, -99999.0, -32767.0, -32768.0];
 
+/// Numbers that do so without their sign, too, and may be measured.
+const UNSIGNED: [f64; 6] =
+    [999.0, 9999.0, 99999.0, 999_999.0, 32767.0, 32768.0];
+
+/// So many times the greatest of the other values is such a number where it
+/// is a mark: of a place, which grows, and of a speed or an acceleration.
+const ABOVE_OTHERS: (f64, f64) = (10.0, 2.0);
+
+/// More than a mass on a slope has over half a recording \[m/s2\]: three
+/// times what gravity gives.
+const SUSTAINED: f64 = 30.0;
+
+/// Values beyond what can be are strays where so many times the others do not
+/// reach the least of them: between units there is no such gap.
+const STRAY: f64 = 3.0;
+
 /// The longest that a recording may last, and begin, after the release [s].
 const LATEST: f64 = 3600.0;
 
 /// Faster than any avalanche or rock fall that was measured [m/s].
-const FASTEST: f64 = 120.0;
+pub(crate) const FASTEST: f64 = 120.0;
 
 /// More than any sensor in a flow shows [m/s2].
 const HARDEST: f64 = 500.0;
@@ -38,8 +54,13 @@ pub(super) struct Values<'v> {
 type Wrong = (u64, String);
 
 /// Whether a number is a mark for "not measured".
-pub(super) fn is_mark(value: f64) -> bool {
+pub(crate) fn is_mark(value: f64) -> bool {
     MARKS.contains(&value)
+}
+
+/// Whether a number is such a mark, or may be one or a measured value.
+pub(crate) fn may_be_mark(value: f64) -> bool {
+    is_mark(value) || UNSIGNED.contains(&value)
 }
 
 /// How far a smooth recording scatters about itself, from the median second
@@ -71,7 +92,16 @@ impl Values<'_> {
     }
 
     fn marks(&self) -> Result<(), Wrong> {
-        match self.values.iter().position(|v| is_mark(*v)) {
+        let others = self.values.iter().filter(|v| !may_be_mark(**v));
+        let top = others.fold(0.0, |top: f64, v| top.max(v.abs()));
+        let least = match self.quantity {
+            // One place alone may be any.
+            Quantity::Position if top == 0.0 => f64::INFINITY,
+            Quantity::Position => ABOVE_OTHERS.0 * top,
+            _ => ABOVE_OTHERS.1 * top,
+        };
+        let marks = |v: &f64| is_mark(*v) || (may_be_mark(*v) && *v > least);
+        match self.values.iter().position(marks) {
             None => Ok(()),
             Some(i) => Err(self.at(
                 i,
@@ -82,6 +112,26 @@ impl Values<'_> {
                 ),
             )),
         }
+    }
+
+    /// Refuses standard errors beyond what any value can be.
+    pub(super) fn check_errors(&self, errors: &[f64]) -> Result<(), Wrong> {
+        let limit = match self.quantity {
+            Quantity::Velocity => FASTEST,
+            Quantity::Acceleration => HARDEST,
+            Quantity::Position => FASTEST * LATEST,
+        };
+        let Some(i) = errors.iter().position(|e| *e > limit) else {
+            return Ok(());
+        };
+        let (quantity, unit) = (self.quantity, self.quantity.unit());
+        let message = format!(
+            "sigma = {}; expected the standard error of this {quantity} \
+             [{unit}], no more than {limit}: drop the column sigma where the \
+             errors are not known, or the rows where nothing was measured",
+            errors[i]
+        );
+        Err((self.lines[i], message))
     }
 
     fn clock(&self) -> Result<(), Wrong> {
@@ -123,11 +173,10 @@ impl Values<'_> {
         };
         let beyond = |v: &f64| v.abs() > limit;
         let Some(i) = self.values.iter().position(beyond) else {
-            return Ok(());
+            return self.sustained();
         };
-        let few = self.values.iter().filter(|v| beyond(v)).count();
         let top = self.values.iter().fold(0.0, |top: f64, v| top.max(v.abs()));
-        let mend = if 50 * few < self.values.len() {
+        let mend = if self.are_strays(limit) {
             "drop the rows that are no measurement"
         } else if self.quantity == Quantity::Acceleration {
             "are these in another unit? convert them"
@@ -141,6 +190,36 @@ impl Values<'_> {
         Err(self.at(
             i,
             &format!("{unit}, and nothing has {limit} of them: {mend}"),
+        ))
+    }
+
+    /// Whether what is beyond a limit is a few values that the others do not
+    /// lead to.
+    fn are_strays(&self, limit: f64) -> bool {
+        let sizes: Vec<f64> = self.values.iter().map(|v| v.abs()).collect();
+        let beyond = || sizes.iter().copied().filter(|v| *v > limit);
+        let few = beyond().count();
+        let least = beyond().fold(f64::INFINITY, f64::min);
+        let others = sizes.iter().copied().filter(|v| *v <= limit);
+        let top = others.fold(0.0, f64::max);
+        50 * few < sizes.len()
+            || (3 * few <= sizes.len() && least > STRAY * top)
+    }
+
+    /// Refuses accelerations that no mass keeps up.
+    fn sustained(&self) -> Result<(), Wrong> {
+        let sizes: Vec<f64> = self.values.iter().map(|v| v.abs()).collect();
+        let is_hard = self.quantity == Quantity::Acceleration
+            && median(&sizes) > SUSTAINED;
+        let hard = sizes.iter().position(|v| *v > SUSTAINED);
+        let Some(i) = hard.filter(|_| is_hard) else { return Ok(()) };
+        Err(self.at(
+            i,
+            &format!(
+                "m/s2, and half of the values are above {SUSTAINED}, which no \
+                 mass keeps up: are these cm/s2? divide all by 100; or \
+                 thousandths of g? multiply all by 0.00981"
+            ),
         ))
     }
 
@@ -237,8 +316,21 @@ mod tests {
     }
 
     #[test]
+    fn a_number_like_a_mark_may_be_measured() {
+        // 9.99 m/s in cm/s is no mark among its like, and 999 m a place.
+        let cm = rows(2000.0, 1.0).into_iter().map(|(t, v)| (t, v - 1.0));
+        let mut cm: Vec<_> = cm.collect();
+        cm[4].1 = 999.0;
+        let text = said(Quantity::Velocity, &cm).unwrap();
+        assert!(text.contains("cm/s? divide all by 100"), "{text}");
+        let way = [(1.0, 250.0), (2.0, 600.0), (3.0, 999.0)];
+        assert_eq!(said(Quantity::Position, &way), None);
+        assert_eq!(said(Quantity::Position, &[(9.0, 999.0)]), None);
+    }
+
+    #[test]
     fn the_likely_slip_is_named() {
-        use Quantity::{Position, Velocity};
+        use Quantity::{Acceleration, Position, Velocity};
         let km_h = rows(240.0, 1.0);
         let turned: Vec<_> =
             rows(20.0, 1.0).iter().map(|r| (r.0, -r.1)).collect();
@@ -248,8 +340,16 @@ mod tests {
             .map(|i| (f64::from(i), 0.02 * f64::from(i % 3 - 1)))
             .collect();
         let one = [(1.0, 5.0), (2.0, 5.0)];
+        let marked = |mark| [(1.0, 3.0), (2.0, 7.0), (3.0, mark), (4.0, 9.0)];
+        let hard: Vec<_> = (1..=9).map(|i| (f64::from(i), 98.1)).collect();
         type Case<'c> = (Quantity, &'c [(f64, f64)], &'c str);
-        let cases: [Case; 10] = [
+        let cases: [Case; 16] = [
+            (Velocity, &marked(999.0), "4: velocity = 999; expected a measu"),
+            (Velocity, &marked(9999.0), "this is a mark for none: drop the"),
+            (Velocity, &marked(99999.0), "this is a mark for none: drop the"),
+            (Position, &marked(999.0), "4: position = 999; expected a measu"),
+            (Velocity, &marked(400.0), "drop the rows that are no measure"),
+            (Acceleration, &hard, "2: acceleration = 98.1"),
             (Velocity, &km_h[..], "km/h? divide all by 3.6"),
             (Velocity, &rows(9000.0, 1.0), "cm/s? divide all by 100"),
             (Velocity, &rows(20.0, 200.0), "milliseconds? divide all by 1000"),

@@ -20,7 +20,7 @@ use crate::physics::friction::LawSum;
 use crate::physics::{Rest, State};
 use crate::prior::AnyPrior;
 use crate::scalar::{Plain, Real};
-use crate::spelling::quoted;
+use crate::spelling::{nearest, quoted};
 
 /// One event under a sum of named laws with a named noise, and under the
 /// changes of mechanisms where there are some.
@@ -152,12 +152,18 @@ impl Assembled {
             Some(key) => {
                 let names: Vec<_> =
                     self.unknowns().map(|u| u.name.as_str()).collect();
+                let mend = match nearest(key, &names) {
+                    Some(name) => format!("did you mean {name:?}?"),
+                    None => "mend or drop the line".to_owned(),
+                };
                 let key = quoted(key);
                 Err(Error::input(format!(
-                    "priors.{}: the model has no parameter {key}; it has {}",
+                    "priors.{}: the model has no parameter {key}; expected \
+                     one of {}: {mend}",
                     key.trim_matches('"'),
                     names.join(", ")
-                )))
+                ))
+                .on_page("formats"))
             }
         }
     }

@@ -10,7 +10,7 @@ use super::{
 use crate::error::{Error, Result};
 use crate::scalar::{Kind, Plain, Real};
 use crate::seed::Rng;
-use crate::spelling::quoted;
+use crate::spelling::{nearest, quoted};
 
 /// What an argument has to be.
 #[derive(Debug, Clone, Copy)]
@@ -317,41 +317,13 @@ fn plural(count: usize) -> String {
 /// The error for a name that is no distribution's.
 fn unknown(name: &str) -> Error {
     let names: Vec<_> = NAMES.iter().map(|n| n.0).collect();
-    let nearest = names
-        .iter()
-        // A word much longer than any name is none of them misspelt.
-        .filter(|known| name.len() <= 4 * known.len())
-        .min_by_key(|known| distance(name, known))
+    let meant = nearest(name, &names)
         .map_or(".".to_owned(), |n| format!("; did you mean \"{n}\"?"));
     Error::input(format!(
-        "there is no distribution {}{nearest} The distributions are {}",
+        "there is no distribution {}{meant} The distributions are {}",
         quoted(name),
         names.join(", ")
     ))
-}
-
-/// Ten times the letters to insert, delete or replace between two words; one
-/// for a letter in the other case.
-fn distance(from: &str, to: &str) -> usize {
-    let to: Vec<char> = to.chars().collect();
-    let mut row: Vec<usize> = (0..=to.len()).map(|j| 10 * j).collect();
-    for (i, letter) in from.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = 10 * (i + 1);
-        for (j, &other) in to.iter().enumerate() {
-            let replace = if letter == other {
-                0
-            } else if letter.eq_ignore_ascii_case(&other) {
-                1
-            } else {
-                10
-            };
-            let cost = (diagonal + replace).min(row[j].min(row[j + 1]) + 10);
-            diagonal = row[j + 1];
-            row[j + 1] = cost;
-        }
-    }
-    row[to.len()]
 }
 
 #[cfg(test)]
@@ -363,5 +335,14 @@ pub(super) mod tests {
     pub(in super::super) fn build(name: &str, values: &[f64]) -> AnyPrior {
         let family = FAMILIES.iter().find(|f| f.name == name).unwrap();
         (family.build)(values).unwrap()
+    }
+
+    #[test]
+    fn only_a_name_that_is_near_is_meant() {
+        let said = |text| AnyPrior::parse(text).unwrap_err().to_string();
+        let meant = said("gama(9, 0.03)");
+        assert!(meant.contains("did you mean \"Gamma\"?"), "{meant}");
+        let none = said("Truncated(Normal(0, 1), 0, 1)");
+        assert!(none.contains("\"Truncated\". The distr"), "{none}");
     }
 }

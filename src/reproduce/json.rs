@@ -13,7 +13,7 @@ pub fn reproduction_json(found: &Reproduction) -> Value {
         .map(|p| (p.name.to_owned(), prior(p, found.samples)))
         .collect();
     let case = &found.case;
-    json!({
+    let mut document = json!({
         "schema": 1,
         "samples": found.samples,
         "left_out": found.left_out,
@@ -24,7 +24,9 @@ pub fn reproduction_json(found: &Reproduction) -> Value {
         "delta1": case.delta1,
         "delta2": case.delta2,
         "sbc": found.ranks.iter().map(ranks).collect::<Vec<_>>(),
-    })
+    });
+    found.origin.write_to(&mut document);
+    document
 }
 
 /// The p-value and the histogram of each quantity's ranks.

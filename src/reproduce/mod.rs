@@ -22,12 +22,15 @@ pub use page::{page, words};
 use crate::error::{Error, Result};
 use crate::infer::Progress;
 use crate::observe::Series;
+use crate::report::Origin;
 use crate::sbc::Ranks;
 use crate::seed::Seed;
 
 /// Everything that was computed again.
 #[derive(Debug, Clone)]
 pub struct Reproduction {
+    /// Where it comes from.
+    pub origin: Origin,
     /// How many synthetic series.
     pub samples: usize,
     /// How many more were left out, since their errors carry them off the
@@ -86,6 +89,7 @@ pub fn reproduce(
     let first =
         experiment::plan(1.0, 0.0)?.with_recording(first_of(&seen)?)?;
     Ok(Reproduction {
+        origin: Origin::default(),
         samples: seen.len(),
         left_out: samples - seen.len(),
         seed,

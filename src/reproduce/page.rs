@@ -8,7 +8,7 @@ use crate::report::digits::share_interval;
 use crate::report::svg::{
     Boxes, Curves, Histogram, Picture, box_plots, curves, histograms,
 };
-use crate::report::{figure, standalone};
+use crate::report::{figure, how_computed, standalone};
 
 /// Table 5 of the paper, in percent: mu, xi, sigma2, and mu, xi, phi, sigma2.
 const PAPER: [&[usize]; 2] = [&[64, 84, 0], &[98, 82, 93, 98]];
@@ -220,8 +220,16 @@ pub fn page(found: &Reproduction) -> String {
                   said; as printed it is " (printed.priors.xi) ", whose mean \
                   of 1000 and sd of 200 do not go with the paper's own \
                   posterior (sd 306, mode 496)." }
+        (computed(found))
     };
     standalone("Heredia et al. (2020), computed again", &body)
+}
+
+/// What the series come from: a seed, and no file.
+fn computed(found: &Reproduction) -> Markup {
+    let mut facts = found.origin.facts();
+    facts.push(("seed".to_owned(), found.seed.to_string()));
+    how_computed(&facts, &[])
 }
 
 fn coverage_table(found: &Reproduction) -> Markup {

@@ -289,6 +289,31 @@ const GROUND: &[Edit] = &[
         ],
     ),
     (
+        // The track is too short besides, and speeds in km/h would mend that.
+        "slope-in-radians-on-a-short-track",
+        "file = \"track.csv\"",
+        "slope = 0.44\nlength = 9",
+        &[
+            "event.toml:4: track.slope is 0.44; expected degrees",
+            "are these radians? write slope = 25.2",
+        ],
+    ),
+    (
+        "slope-in-radians-from-a-speed",
+        "file = \"track.csv\"\n\n[release]\nx = 0.0\nvelocity = 0.0",
+        "slope = 0.44\nlength = 9000\n\n[release]\nx = 0.0\nvelocity = 0.2",
+        &["event.toml:4: track.slope is 0.44", "write slope = 25.2"],
+    ),
+    (
+        "depth-in-millimetres",
+        "1.5",
+        "1500",
+        &[
+            "event.toml:11: flow.depth is 1500",
+            "millimetres, write depth = 1.5",
+        ],
+    ),
+    (
         "length-negative",
         "file = \"track.csv\"",
         "slope = 30\nlength = -1",
@@ -656,6 +681,15 @@ const MODEL: &[Edit] = &[
         &["event.toml:23: priors.mu is \"Gamma(9,\\n0.03)\"", "one line"],
     ),
     (
+        "prior-of-no-name",
+        "Gamma(9, 0.03)",
+        "Truncated(1, 2)",
+        &[
+            "event.toml:23: priors.mu: ",
+            "no distribution \"Truncated\". The distributions are Normal",
+        ],
+    ),
+    (
         "prior-of-a-part",
         "mu = \"Gamma(9, 0.03)\"",
         "coulomb.mu = \"Gamma(9)\"",
@@ -809,6 +843,24 @@ const RECORDINGS: &[(&str, &str, Expected)] = &[
             "recording.csv:3: velocity = -9999; expected a measured value",
             "drop the rows where nothing was measured",
         ],
+    ),
+    (
+        "recording-mark-without-a-sign",
+        "t,velocity\n1,2.5\n2,999\n3,7\n",
+        &[
+            "recording.csv:3: velocity = 999; expected a measured value",
+            "drop the rows where nothing was measured",
+        ],
+    ),
+    (
+        "recording-one-far-above",
+        "t,velocity\n1,2.5\n2,5\n3,400\n",
+        &["recording.csv:4: velocity = 400", "drop the rows that are no"],
+    ),
+    (
+        "recording-sigma-mark",
+        "t,velocity,sigma\n1,2.5,0.1\n2,5,1e8\n",
+        &["recording.csv:3: sigma = 100000000", "drop the column sigma"],
     ),
     (
         "recording-turned",
@@ -972,6 +1024,31 @@ const MISFITS: &[Misfit] = &[
             &["event.toml:16: recording.window: ", "positions", "window = 0"],
         ),
         "t,position\n1,200\n2,300\n",
+    ),
+    (
+        (
+            "acceleration-in-another-unit",
+            "\"velocity\"",
+            "\"acceleration\"",
+            &[
+                "recording.csv:2: acceleration = 98.1; expected m/s2",
+                "are these cm/s2? divide all by 100",
+            ],
+        ),
+        "t,acceleration\n1,98.1\n2,98.1\n3,98.1\n",
+    ),
+    (
+        (
+            "speed-in-km-h-on-a-slope-in-radians",
+            "file = \"track.csv\"",
+            "slope = 0.44\nlength = 4",
+            &[
+                "event.toml:15: recording.file: ",
+                "are the speeds km/h? divide them by 3.6",
+                "if these are radians, write slope = 25.2",
+            ],
+        ),
+        "t,velocity\n0.1,3\n0.2,6\n0.3,9\n0.4,12\n0.5,15\n0.6,18\n",
     ),
     (
         (

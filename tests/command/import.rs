@@ -662,7 +662,9 @@ fn what_does_not_fit_is_refused_with_a_mend() {
     let dem = terrain(&folder).to_string_lossy().into_owned();
     let log = log.to_string_lossy().into_owned();
     let note = folder.join("path.doc").to_string_lossy().into_owned();
-    let cases: [(&[&str], &str); 12] = [
+    let cases: [(&[&str], &str); 14] = [
+        (&["--from", "30", "--to", "20"], "expected a beginning before the e"),
+        (&["--smooth", "-1"], "--smooth: found -1"),
         (&["--terrain", &dem], "--crs: is not given"),
         (&["--terrain", &dem, "--crs", "EPSG:31254"], "no elevation under"),
         (&["--crs", "EPSG:1"], "--crs: found \"EPSG:1\""),
@@ -683,8 +685,29 @@ fn what_does_not_fit_is_refused_with_a_mend() {
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(2), "{more:?}: {said}");
         assert!(said.contains(part), "{part}: {said}");
+        let is_asked = more.contains(&"--from");
+        assert!(!(is_asked && said.contains("--threshold")), "{said}");
         assert!(!out.exists(), "{more:?}");
     }
+}
+
+#[test]
+fn a_log_that_says_nothing_for_long_is_doubted() {
+    let text = synthetic("t,x,y,z,v", |t, x, way, v| {
+        // Of a log of one run, what comes later is another 100 s later.
+        let later = if t > 25.0 { 100.0 } else { 0.0 };
+        let z = 900.0 - 0.5 * way;
+        format!("{:.1},500,{:.4},{z:.4},{v:.4}", t + later, -x)
+    });
+    let found = imported("silent", &text, |_| {});
+    let doubts = found.doubts.join(" ");
+    assert!(doubts.contains("says nothing for 100."), "{doubts}");
+    assert!(doubts.contains("ends before that"), "{doubts}");
+    let whole = synthetic("t,x,y,z,v", |t, x, way, v| {
+        format!("{t:.1},500,{:.4},{:.4},{v:.4}", -x, 900.0 - 0.5 * way)
+    });
+    let doubts = imported("speaking", &whole, |_| {}).doubts.join(" ");
+    assert!(!doubts.contains("says nothing"), "{doubts}");
 }
 
 /// A project of AvaFrame in which particles of 1, 2 and 3 kg slide north on a

@@ -65,46 +65,76 @@ fn every_malformed_input_ends_in_exit_code_2_and_writes_nothing() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// Words, and what their refusal has to say.
+type Bad = (&'static [&'static str], &'static str);
+
+const BAD_WORDS: [Bad; 26] = [
+    (&["calibrate", "--friction", "coulom"], "--friction"),
+    (&["calibrate", "--noise", "ar(0)"], "--noise"),
+    (&["calibrate", "--noise", "ar(2)"], "regular grid"),
+    (&["calibrate", "--backend", "nuts2"], "mh"),
+    (&["calibrate", "--backend", "map"], "no draws, which a calib"),
+    (&["calibrate", "--backend", "quadrature"], "use mh, random-walk"),
+    (&["compare", "--backend", "mh", "--model", "x"], "use smc, importa"),
+    (&["calibrate", "--chains", "0"], "1"),
+    (&["bench", "--noise", "infer"], "--noise \"ar(1)\""),
+    (
+        &["compare", "--model", "voellmy, infer", "--model", "none, iid"],
+        "name it, as in",
+    ),
+    (&["calibrate", "--draws=-3"], "draws"),
+    (&["calibrate", "--seed", "x"], "seed"),
+    (&["calibrate", "--draws", "90000000"], "fewer --draws"),
+    (&["compare", "--model", "voellmy, iid"], "two models"),
+    (&["compare", "--model", "voellmy", "--model", "coulomb, iid"], "comma"),
+    (&["simulate", "--set", "nu=1"], "nu"),
+    (&["simulate", "--set", "mu"], "NAME=VALUE"),
+    (&["simulate", "--set", "mu=NaN"], "finite"),
+    (&["diagnose", "--odds", "surgee=3"], "none, unknown, turb"),
+    (&["diagnose", "--out", "Cargo.toml"], "Cargo.toml is a file"),
+    (&["challenge", "--out", "Cargo.toml/sub"], "Cargo.toml is a file"),
+    (&["challenge", "--errors", "reel"], "simple or real"),
+    (&["diagnose", "--rate", "0"], "more than 0"),
+    (&["calibrate", "--rate", "5", "--thin", "x"], "average or pick"),
+    (&["calibrate", "--thin", "pick"], "--rate"),
+    (&["fly"], "fly"),
+];
+
+/// Those of values that are there and cannot be.
+const BAD_VALUES: [Bad; 11] = [
+    (
+        &["simulate", "--set", "mu=-1"],
+        "--set \"mu=-1\": mu is -1; expected 0 or more, as its prior",
+    ),
+    (&["simulate", "--set", "xi=0"], "these values have no motion (mu = "),
+    (&["simulate", "--set=mu=0.2", "--set=mu=0.3"], "mu is set to 0.2 bef"),
+    (
+        &["compare", "--model", "voellmy, iid", "--model", "coulom, iid"],
+        "--model \"coulom, iid\": ",
+    ),
+    (
+        &["compare", "--model", "voellmy, iid", "--model", "coulomb, idd"],
+        "--model \"coulomb, idd\": ",
+    ),
+    (&["calibrate", "--seed", "-1"], "from 0 to 18446744073709551615"),
+    (&["calibrate", "--rate", "-1"], "more than 0"),
+    (&["calibrate", "--chains", "-1"], "from 1 to"),
+    (&["calibrate", "--warmup", "-1"], "from 0 to"),
+    (&["reproduce", "--samples", "-1"], "from 0 to"),
+    (&["diagnose", "--odds", "-1"], "expected NAME=ODDS"),
+];
+
 #[test]
 fn bad_arguments_end_in_exit_code_2() {
-    let cases: [(&[&str], &str); 26] = [
-        (&["calibrate", "--friction", "coulom"], "--friction"),
-        (&["calibrate", "--noise", "ar(0)"], "--noise"),
-        (&["calibrate", "--noise", "ar(2)"], "regular grid"),
-        (&["calibrate", "--backend", "nuts2"], "mh"),
-        (&["calibrate", "--backend", "map"], "no draws, which a calib"),
-        (&["calibrate", "--backend", "quadrature"], "use mh, random-walk"),
-        (&["compare", "--backend", "mh", "--model", "x"], "use smc, importa"),
-        (&["calibrate", "--chains", "0"], "1"),
-        (&["bench", "--noise", "infer"], "--noise \"ar(1)\""),
-        (
-            &["compare", "--model", "voellmy, infer", "--model", "none, iid"],
-            "name it, as in",
-        ),
-        (&["calibrate", "--draws=-3"], "draws"),
-        (&["calibrate", "--seed", "x"], "seed"),
-        (&["calibrate", "--draws", "90000000"], "fewer --draws"),
-        (&["compare", "--model", "voellmy, iid"], "two models"),
-        (
-            &["compare", "--model", "voellmy", "--model", "coulomb, iid"],
-            "comma",
-        ),
-        (&["simulate", "--set", "nu=1"], "nu"),
-        (&["simulate", "--set", "mu"], "NAME=VALUE"),
-        (&["simulate", "--set", "mu=NaN"], "finite"),
-        (&["diagnose", "--odds", "surgee=3"], "none, unknown, turb"),
-        (&["diagnose", "--out", "Cargo.toml"], "Cargo.toml is a file"),
-        (&["challenge", "--out", "Cargo.toml/sub"], "Cargo.toml is a file"),
-        (&["challenge", "--errors", "reel"], "simple or real"),
-        (&["diagnose", "--rate", "0"], "more than 0"),
-        (&["calibrate", "--rate", "5", "--thin", "x"], "average or pick"),
-        (&["calibrate", "--thin", "pick"], "--rate"),
-        (&["fly"], "fly"),
-    ];
-    for (arguments, part) in cases {
+    for (arguments, part) in BAD_WORDS.into_iter().chain(BAD_VALUES) {
         let output = couloir(arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-        assert!(said(&output).contains(part), "{}", said(&output));
+        let said = said(&output);
+        assert!(said.contains(part), "{said}");
+        // In one style, whoever refuses; the commands may be a list.
+        assert!(said.starts_with("couloir: "), "{said}");
+        assert_eq!(said.lines().count(), 1, "{said}");
+        assert!(!said.contains("to pass"), "{said}");
     }
 }
 
@@ -275,7 +305,9 @@ fn a_prior_of_no_parameter_is_refused_unless_the_law_was_changed() {
     let folder = with_event("unused-prior", &event);
     let output = couloir(&["calibrate", &folder.to_string_lossy()]);
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-    assert!(said(&output).contains("zeta"), "{}", said(&output));
+    let said = said(&output);
+    assert!(said.contains("event.toml:24: priors.zeta: "), "{said}");
+    assert!(said.contains("(manual: formats.md)"), "{said}");
 }
 
 #[test]
@@ -480,6 +512,77 @@ fn the_first_command_fits_80_columns() {
     }
 }
 
+/// What every result says of where it comes from.
+fn has_its_origin(json: &Value, command: &str, seed: Option<u64>) {
+    let program = json["program"].as_str().unwrap();
+    assert!(program.starts_with("couloir "), "{program}");
+    let typed = json["command"].as_str().unwrap();
+    assert!(typed.starts_with(&format!("couloir {command}")), "{typed}");
+    assert_eq!(json["seed"].as_u64(), seed, "{command}");
+}
+
+/// The same of what was read.
+fn has_its_inputs(json: &Value) {
+    let sum = json["inputs"]["event.toml"].as_str().unwrap();
+    assert_eq!(sum.len(), 64, "{sum}");
+}
+
+#[test]
+fn a_challenge_and_a_study_say_where_they_come_from() {
+    let out = fresh("origin");
+    let folder = out.to_str().unwrap();
+    let challenge = ["challenge", "--cases", "1", "--quick", "--seed", "3"];
+    for (words, seed) in
+        [(&challenge[..], 3), (&["reproduce", "--samples", "1"], 1)]
+    {
+        let words = [words, &["--json", "--out", folder]].concat();
+        let output = couloir(&words);
+        assert!(output.status.success(), "{}", said(&output));
+        let json: Value = serde_json::from_str(&printed(&output)).unwrap();
+        has_its_origin(&json, words[0], Some(seed));
+        let page = match words[0] {
+            "reproduce" => "reproduction.html",
+            _ => "challenge.html",
+        };
+        let page = std::fs::read_to_string(out.join(page)).unwrap();
+        assert!(page.contains("<dt>program</dt>"), "{}", words[0]);
+        let command = format!("<dd>couloir {}", words[0]);
+        assert!(page.contains(&command), "{command}");
+    }
+    std::fs::remove_dir_all(out).unwrap();
+}
+
+#[test]
+fn a_recording_that_is_given_twice_is_told() {
+    let folder = with_event("twice", crate::cases::EVENT);
+    let again = with_event("twice-again", crate::cases::EVENT);
+    let [one, two] = [&folder, &again].map(|f| f.to_str().unwrap());
+    let output = couloir(&["diagnose", one, two, "--quick", "--json"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let json: Value = serde_json::from_str(&printed(&output)).unwrap();
+    for key in ["warnings", "words"] {
+        let told = json[key].to_string();
+        assert!(told.contains("have the same recording"), "{told}");
+    }
+}
+
+#[test]
+fn one_value_says_nothing_of_what_is_missing() {
+    let folder = with_recording("one-value", "t,velocity\n2,5\n");
+    let words = ["diagnose", folder.to_str().unwrap(), "--quick", "--json"];
+    let output = couloir(&words);
+    assert!(output.status.success(), "{}", said(&output));
+    let json: Value = serde_json::from_str(&printed(&output)).unwrap();
+    let told = [&json["words"], &json["warnings"]].map(Value::to_string);
+    assert!(!told[0].contains("Nothing is missing"), "{}", told[0]);
+    assert!(told[0].contains("1 value for 3 unknowns"), "{}", told[0]);
+    assert!(
+        told[1].contains("tell nothing of what is missing"),
+        "{}",
+        told[1]
+    );
+}
+
 #[test]
 fn models_are_compared_by_their_evidence() {
     let output = couloir(&[
@@ -492,6 +595,9 @@ fn models_are_compared_by_their_evidence() {
         "--json",
     ]);
     let json: Value = serde_json::from_str(&printed(&output)).unwrap();
+    has_its_origin(&json, "compare", Some(1));
+    has_its_inputs(&json);
+    assert!(json["models"][1]["priors"]["phi"].is_string(), "{json}");
     let factor = &json["models"][1]["log10_bayes_factor"];
     let error = factor["value"].as_f64().unwrap() - 1.161;
     // The quadrature's figure; five standard errors of this run.
@@ -550,10 +656,33 @@ fn a_simulation_has_the_values_it_was_given() {
     ]);
     let json: Value = serde_json::from_str(&printed(&output)).unwrap();
     assert_eq!(json["parameters"]["mu"], 0.32);
+    // No random draw, and no seed.
+    has_its_origin(&json, "simulate", None);
+    has_its_inputs(&json);
+    assert!(json["priors"]["mu"].is_string(), "{json}");
     // The speed at t = 10 s by a Runge-Kutta solution on the smooth track;
     // pieces of 1.4 m differ from it by some mm/s.
     let speed = json["velocity"][10].as_f64().unwrap();
     assert!((speed - 21.163_185).abs() < 0.02, "{speed}");
+}
+
+#[test]
+fn values_without_a_motion_are_refused() {
+    let folder = with_event("no-motion", crate::cases::EVENT);
+    let event = folder.to_str().unwrap();
+    for (set, why) in [("xi=0", "no finite numbers"), ("mu=5", "it is rele")] {
+        let output = couloir(&["simulate", event, "--set", set]);
+        let said = said(&output);
+        assert_eq!(output.status.code(), Some(2), "{set}: {said}");
+        assert!(said.contains(why) && output.stdout.is_empty(), "{said}");
+    }
+    // Without friction it moves as well.
+    let output = couloir(&["simulate", event, "--set", "mu=0"]);
+    assert!(output.status.success(), "{}", said(&output));
+    // Numbers of many digits stay on their lines.
+    let output = couloir(&["simulate", event, "--set", "xi=1e14"]);
+    let text = printed(&output);
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
 }
 
 #[test]
@@ -575,6 +704,9 @@ fn every_backend_is_benchmarked() {
     arguments.extend(QUICK);
     let output = couloir(&arguments);
     let json: Value = serde_json::from_str(&printed(&output)).unwrap();
+    has_its_origin(&json, "bench", Some(1));
+    has_its_inputs(&json);
+    assert!(json["priors"]["mu"].is_string(), "{json}");
     let backends = json["backends"].as_array().unwrap();
     assert_eq!(backends.len(), couloir::infer::BACKENDS.len());
     for backend in backends {
@@ -772,6 +904,46 @@ fn what_could_be_true_is_warned_of() {
         );
     }
     let (_, json) = told_of(&with_event("undoubted", crate::cases::EVENT));
+    assert_eq!(json["warnings"].as_array().unwrap().len(), 0, "{json}");
+}
+
+#[test]
+fn units_that_could_be_true_are_warned_of() {
+    let good = crate::cases::EVENT;
+    let places = good.replacen("\"velocity\"", "\"position\"", 1);
+    let deep = good.replacen("depth = 1.5", "depth = 150", 1);
+    let speeds = crate::cases::RECORDING;
+    let warned = [
+        ("deep", &*deep, speeds, "centimetres, write depth = 1.5"),
+        (
+            "at-once",
+            good,
+            "t,velocity\n1,20\n2,20.5\n3,21\n",
+            "begins with 20 m/s at t = 1, and by then gravity gives",
+        ),
+        (
+            "kilometres",
+            &*places,
+            "t,position\n5,0.02\n10,0.07\n15,0.15\n",
+            "if these are kilometres, multiply them by 1000",
+        ),
+        (
+            "unsure",
+            good,
+            "t,velocity,sigma\n1,2.5,100\n2,5,100\n3,7.4,100\n",
+            "has 100 m/s for the usual standard error",
+        ),
+    ];
+    for (name, event, recording, part) in warned {
+        let folder = with_event(name, event);
+        std::fs::write(folder.join("recording.csv"), recording).unwrap();
+        let (words, json) = told_of(&folder);
+        let all = json["warnings"].as_array().unwrap();
+        assert_eq!(all.len(), 1, "{name}: {all:?}");
+        assert!(words.contains(part), "{name}: {words}");
+        assert!(all[0].as_str().unwrap().contains(part), "{name}: {all:?}");
+    }
+    let (_, json) = told_of(&with_event("no-doubt", good));
     assert_eq!(json["warnings"].as_array().unwrap().len(), 0, "{json}");
 }
 

@@ -78,7 +78,7 @@ fn answer(d: &Diagnosis) -> Markup {
     let first = &words[..words.len().min(first_sentences(d))];
     html! {
         p class={ "verdict " (d.verdict.name()) } {
-            strong { (headline(d.verdict)) }
+            strong { (headline(d)) }
             @if d.quick { " " span.mark { "quick look" } }
             @if d.weak { " " span.mark { "weak" } }
         }
@@ -117,8 +117,9 @@ fn force_title(verdict: Verdict) -> &'static str {
     }
 }
 
-fn headline(verdict: Verdict) -> &'static str {
-    match verdict {
+fn headline(d: &Diagnosis) -> &'static str {
+    match d.verdict {
+        Verdict::Adequate if d.too_few().is_some() => "Too few values to tell",
         Verdict::Adequate => "Nothing is missing",
         Verdict::MissingPhysics => "Physics is missing",
         Verdict::Measurement => "The start or the measurement is off",

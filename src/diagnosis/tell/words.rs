@@ -109,6 +109,12 @@ fn verdict(d: &Diagnosis) -> String {
 }
 
 fn adequate(d: &Diagnosis, model: &str, event: &str) -> String {
+    if let Some(few) = d.too_few() {
+        return format!(
+            "Whether anything is missing from {model} cannot be told: {event} \
+             has {few}."
+        );
+    }
     let sure = d.mechanisms.iter().find(|m| m.kind == Hypothesis::Baseline);
     let sure = sure.map_or(String::new(), |m| {
         format!(" (probability {})", probability(m.probability))
