@@ -203,7 +203,7 @@ fn a_corrected_event_runs() {
     let json = model("coulomb, iid");
     assert_eq!(json["models"][0]["mechanisms"][0], "friction-patch");
     assert!(json["models"][1]["mechanisms"].is_null());
-    let with = ["from=0", "length=20", "delta_mu=0.4"]
+    let with = ["from=0", "length=11", "delta_mu=0.4"]
         .map(|set| format!("friction-patch.{set}"));
     let mut ends = Vec::new();
     for delta in ["friction-patch.delta_mu=0", &with[2]] {
