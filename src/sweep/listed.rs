@@ -5,6 +5,7 @@ use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::table::of_csv;
 use crate::error::{Error, Result};
 use crate::io::{place, quoted};
 
@@ -54,7 +55,10 @@ pub fn listed(list: &Path) -> Result<Vec<Listed>> {
         ))
     };
     let events = match list.exists() {
-        true if is_csv && list.is_file() => of_csv(list)?,
+        true if is_csv && list.is_file() => {
+            let lines = of_csv(list)?.into_iter();
+            lines.map(|(event, options)| Listed { event, options }).collect()
+        }
         true if list.is_dir() => {
             let mut events = Vec::new();
             below(list, &mut HashSet::new(), &mut events)?;
@@ -191,62 +195,6 @@ fn every_path(
 fn is_file(path: &Path) -> bool {
     path.is_file() && path.extension().is_some_and(|e| e == "toml")
 }
-
-fn of_csv(list: &Path) -> Result<Vec<Listed>> {
-    let wrong = |error: csv::Error| {
-        let line = error.position().map(|at| format!(":{}", at.line()));
-        let what = match error.kind() {
-            csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-                format!("{len} cells; expected {expected_len}, as in its head")
-            }
-            csv::ErrorKind::Utf8 { .. } => {
-                "is no text; expected UTF-8".to_owned()
-            }
-            csv::ErrorKind::Io(error) => format!("could not be read: {error}"),
-            _ => "is no CSV table".to_owned(),
-        };
-        let line = line.unwrap_or_default();
-        Error::input(format!("{}{line}: {what}", place(list)))
-    };
-    let mut reader = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_path(list)
-        .map_err(wrong)?;
-    let head = reader.headers().map_err(wrong)?.clone();
-    let Some(at) = head.iter().position(|name| name == EVENT) else {
-        return Err(Error::input(format!(
-            "{}:1: no column is called event; expected one, with the path of \
-             an event folder in each line",
-            place(list)
-        )));
-    };
-    let folder = list.parent().unwrap_or(Path::new(""));
-    let mut events = Vec::new();
-    for line in reader.records() {
-        let line = line.map_err(wrong)?;
-        let event = line.get(at).unwrap_or_default();
-        if event.is_empty() {
-            let number = line.position().map_or(0, csv::Position::line);
-            return Err(Error::input(format!(
-                "{}:{number}: the cell of event is empty; expected the path \
-                 of an event folder",
-                place(list)
-            )));
-        }
-        let event = folder.join(event);
-        let cells = head.iter().zip(&line);
-        let said =
-            cells.filter(|(name, cell)| *name != EVENT && !cell.is_empty());
-        let options = said.map(|(name, cell)| format!("--{name}={cell}"));
-        let options = options.map(OsString::from).collect();
-        events.push(Listed { event, options });
-    }
-    Ok(events)
-}
-
-/// The column with the paths.
-const EVENT: &str = "event";
 
 #[cfg(test)]
 mod tests {

@@ -16,6 +16,7 @@ mod row;
 mod run;
 mod shard;
 mod summary;
+mod table;
 mod task;
 
 pub use files::{Rows, summed, write_csv, write_json};
