@@ -169,11 +169,13 @@ impl Motion {
         let numbers = self.states.iter().flat_map(|s| {
             [s.speed, s.distance, s.acceleration].map(Real::value)
         });
-        if !numbers.into_iter().all(f64::is_finite) {
-            return Some("its speeds are no finite numbers");
-        }
-        let is_still = self.states.iter().all(|s| s.speed.value() == 0.0);
-        is_still.then_some("the mass stays where it is released")
+        let is_motion = numbers.into_iter().all(f64::is_finite);
+        (!is_motion).then_some("its speeds are no finite numbers")
+    }
+
+    /// Whether the mass never starts.
+    fn is_still(&self) -> bool {
+        self.states.iter().all(|s| s.speed.value() == 0.0)
     }
 }
 
@@ -279,6 +281,10 @@ impl Found {
             ));
         }
         let end = match rest {
+            _ if self.motion.is_still() => {
+                "The mass stays where it is released: friction holds it."
+                    .to_owned()
+            }
             Some((t, s)) => {
                 format!("The mass comes to rest at {t:.2} s, {s:.1} m.")
             }
