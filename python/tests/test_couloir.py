@@ -1,6 +1,7 @@
 """The package against the command that it carries, and by itself."""
 
 import json
+import re
 import subprocess
 import sys
 import tempfile
@@ -66,8 +67,16 @@ class AsTheCommand(unittest.TestCase):
             names = sorted(p.name for p in written.iterdir())
             self.assertEqual(names, sorted(p.name for p in saved.iterdir()))
             for name in names:
-                one, other = saved / name, written / name
-                self.assertEqual(one.read_bytes(), other.read_bytes(), name)
+                both = saved / name, written / name
+                one, other = (file.read_text() for file in both)
+                if name.endswith(".json"):
+                    self.same(json.loads(one), json.loads(other))
+                elif name == "couloir.sha256":
+                    # The JSON's differs, which says how it was asked for.
+                    sums = re.compile(r"^[0-9a-f]{64}", re.MULTILINE)
+                    self.assertEqual(sums.sub("", one), sums.sub("", other))
+                else:
+                    self.assertEqual(one, other, name)
 
 
 def columns(path):

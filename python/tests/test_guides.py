@@ -36,7 +36,7 @@ class Guides(unittest.TestCase):
 
     def test_the_manual(self):
         count, printed = run(ROOT / "manual" / "src" / "python.md", {})
-        self.assertEqual(count, 4)
+        self.assertEqual(count, 5)
         self.assertIn("missing-physics ['turbulent-drag']", printed)
         self.assertIn('did you mean "voellmy"?', printed)
         self.assertTrue(Path("from-python/report.html").is_file())
