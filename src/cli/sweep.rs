@@ -270,8 +270,8 @@ impl Arguments {
             return Err(error.within("behind --"));
         }
         let mut known = HashSet::new();
-        for listed in list {
-            let mut new = known.is_empty();
+        for (at, listed) in list.iter().enumerate() {
+            let mut new = at == 0;
             for option in &listed.options {
                 let option = option.to_string_lossy();
                 let name = option.split('=').next().unwrap_or_default();
@@ -290,7 +290,6 @@ impl Arguments {
             {
                 return Err(error.within(place(&self.list)));
             }
-            known.insert(String::new());
         }
         Ok(())
     }

@@ -91,9 +91,7 @@ impl<K: Kind> Cumulative<K> for Beta<K> {
     fn log_above(&self, x: Real<K>) -> Real<K> {
         self.log_parts(x).1
     }
-}
 
-impl<K: Kind> Beta<K> {
     fn log_parts(&self, x: Real<K>) -> (Real<K>, Real<K>) {
         if self.values().is_none() {
             return (impossible(), impossible());

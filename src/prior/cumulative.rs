@@ -25,6 +25,11 @@ pub trait Cumulative<K: Kind>: Prior<K> {
 
     /// ln of the probability of a draw above `x`, a number of the support.
     fn log_above(&self, x: Real<K>) -> Real<K>;
+
+    /// Both at once, which is less work where one follows from the other.
+    fn log_parts(&self, x: Real<K>) -> (Real<K>, Real<K>) {
+        (self.log_below(x), self.log_above(x))
+    }
 }
 
 /// ln(1 - e^x) for x < 0, accurate near both ends (Maechler 2012).

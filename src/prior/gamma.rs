@@ -94,9 +94,7 @@ impl<K: Kind> Cumulative<K> for Gamma<K> {
     fn log_above(&self, x: Real<K>) -> Real<K> {
         self.log_parts(x).1
     }
-}
 
-impl<K: Kind> Gamma<K> {
     fn log_parts(&self, x: Real<K>) -> (Real<K>, Real<K>) {
         match self.values() {
             Some(_) => ln_gamma_parts(self.shape, x / self.scale),

@@ -86,19 +86,19 @@ impl<K: Kind> Prior<K> for InverseGamma<K> {
 /// x is below where the gamma number that it is the inverse of is above.
 impl<K: Kind> Cumulative<K> for InverseGamma<K> {
     fn log_below(&self, x: Real<K>) -> Real<K> {
-        self.log_parts(x).1
+        self.log_parts(x).0
     }
 
     fn log_above(&self, x: Real<K>) -> Real<K> {
-        self.log_parts(x).0
+        self.log_parts(x).1
     }
-}
 
-impl<K: Kind> InverseGamma<K> {
-    /// ln of the probabilities that the gamma number is below and above.
     fn log_parts(&self, x: Real<K>) -> (Real<K>, Real<K>) {
         match self.values() {
-            Some(_) => ln_gamma_parts(self.shape, self.scale / x),
+            Some(_) => {
+                let gamma = ln_gamma_parts(self.shape, self.scale / x);
+                (gamma.1, gamma.0)
+            }
             None => (impossible(), impossible()),
         }
     }

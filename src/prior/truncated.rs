@@ -48,7 +48,7 @@ impl<K: Kind, D: Cumulative<K>> Truncated<K, D> {
         match x.value() {
             x if x <= low => (none, all),
             x if x >= high => (all, none),
-            _ => (self.of.log_below(x), self.of.log_above(x)),
+            _ => self.of.log_parts(x),
         }
     }
 
