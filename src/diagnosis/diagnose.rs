@@ -206,7 +206,7 @@ impl<P: Program> Subject<'_, P> {
         let after = corrected_model(decision, free.as_ref(), row, all, seed);
         let compared =
             self.compared(table, row, after.as_ref(), options, seed)?;
-        let mut law = self.law(table, row, &compared, options)?;
+        let mut law = self.law(table, row, &compared, options, seed)?;
         if after.is_none() {
             law.corrected.clear();
         }
@@ -379,6 +379,7 @@ impl<P: Program> Subject<'_, P> {
         row: &Row<'_, P>,
         compared: &Diagnosis,
         options: &Options,
+        seed: Seed,
     ) -> Result<LawParameters> {
         let is_of_law = |p: &ParameterSummary| {
             // "mu" of "mu", of "mu[1]", and of an event's "C10.mu".
@@ -398,7 +399,8 @@ impl<P: Program> Subject<'_, P> {
         };
         let corrected = compared.parameters.iter().filter(is_own);
         let corrected = corrected.filter(|p| is_of_law(p)).cloned();
-        let open = own_draws(row.noisy.program(), &row.found()?.forces)?;
+        let (program, forces) = (row.noisy.program(), &row.found()?.forces);
+        let open = own_draws(program, &self.extent, forces, seed.child(60))?;
         Ok(LawParameters {
             as_it_was: of(&table.as_it_was()?.none.draws),
             corrected: corrected.collect(),

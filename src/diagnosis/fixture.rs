@@ -197,7 +197,7 @@ fn force(axis: Axis, end: f64, middle: f64, log: f64) -> FreeForce {
         log_bayes_factor: log,
         se: 0.05,
         own: vec![],
-        spread: vec![],
+        looks: vec![],
         at,
     }
 }

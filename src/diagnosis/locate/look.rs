@@ -9,6 +9,7 @@ use super::tangent::{Cells, Tangent, Waves};
 use crate::error::{Error, Result};
 use crate::infer::{Climb, Landscape, Mixture, Slope};
 use crate::mechanism::Extent;
+use crate::model::Posterior;
 
 /// A grid of processes: their lengths and sizes.
 #[derive(Debug, Clone, Copy)]
@@ -52,7 +53,7 @@ const ARRIVED: f64 = 0.1;
 
 /// A peak of the density of a model's own parameters at one process.
 #[derive(Debug, Clone)]
-pub(super) struct Look {
+pub(in crate::diagnosis) struct Look {
     pub(super) process: Process,
     /// The model there.
     pub(super) tangent: Tangent,
@@ -80,9 +81,41 @@ impl Look {
 pub(super) struct Sought<'a, 'm> {
     pub(super) cells: Cells<'a, 'm>,
     pub(super) extent: &'a Extent,
+    /// Whether the force has a level of its own along the whole run.
+    pub(super) has_level: bool,
 }
 
-impl Sought<'_, '_> {
+impl<'a, 'm> Sought<'a, 'm> {
+    /// Without a level.
+    pub(super) fn of(
+        posterior: &'a Posterior<'m>,
+        extent: &'a Extent,
+    ) -> Self {
+        Self { cells: Cells(posterior), extent, has_level: false }
+    }
+
+    /// What makes a process's force of standard normal waves.
+    pub(super) fn factor(&self, process: &Process) -> Result<DMatrix<f64>> {
+        match self.has_level {
+            true => process.factor_with_level(self.extent),
+            false => process.factor(self.extent),
+        }
+    }
+
+    /// The looks at the processes of others, from where these are.
+    ///
+    /// # Errors
+    /// A model that fails.
+    pub(super) fn looks_from(&self, others: &[Look]) -> Result<Vec<Look>> {
+        let best = most(others.iter());
+        let near = |l: &&Look| best - l.log_evidence < NEGLIGIBLE;
+        let near: Vec<&Look> = others.iter().filter(near).collect();
+        let looks = near
+            .into_par_iter()
+            .map(|other| self.look(other.process, &other.tangent));
+        Ok(looks.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
+    }
+
     /// The looks of the whole grid, from likely own parameters: from small
     /// sizes to large ones, where at first the errors explain what the model
     /// does not, and back, where at first the force does.
@@ -147,7 +180,7 @@ impl Sought<'_, '_> {
     /// The look at a process that a tangent leads to; `None` where the start
     /// has no density.
     fn look(&self, process: Process, from: &Tangent) -> Result<Option<Look>> {
-        let factor = process.factor(self.extent)?;
+        let factor = self.factor(&process)?;
         let ridge = Ridge { cells: self.cells, factor: &factor };
         let own = from.own.clone();
         let still = DVector::zeros(own.len());

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
 
 use super::look::{Look, Ridge, Sought};
-use super::process::{CELLS, Process};
+use super::process::Process;
 use super::tangent::{Tangent, Waves, half_log_det, log_normal};
 use crate::draws::log_sum_exp;
 use crate::error::{Error, Result};
@@ -47,7 +47,7 @@ impl Outer for Marginal<'_, '_> {
     fn held(&self, z: &[f64], seed: Seed) -> Result<Held<Self::Rest>> {
         let (process, own) = Process::parted(z);
         let own = DVector::from_column_slice(own);
-        let factor = process.factor(self.sought.extent)?;
+        let factor = self.sought.factor(&process)?;
         let ridge = Ridge { cells: self.sought.cells, factor: &factor };
         let Some(from) = self.start(&process, &own, &factor) else {
             return Ok(Held::nothing());
@@ -138,7 +138,7 @@ fn drawn(
     let spread = waves.precision.l().transpose();
     let (mut all, mut logs) = (Vec::new(), Vec::new());
     for _ in 0..FORCES / 2 {
-        let (white, base) = student(rng)?;
+        let (white, base) = student(waves.mean.len(), rng)?;
         let base = base + half_log_det(&waves.precision);
         let Some(off) = spread.solve_upper_triangular(&white) else {
             continue;
@@ -153,14 +153,14 @@ fn drawn(
     Ok((all, logs))
 }
 
-/// A draw of Student's t distribution of as many dimensions as there are
-/// cells, with ln of its density.
-fn student(rng: &mut Rng) -> Result<(DVector<f64>, f64)> {
-    let (n, k) = (CELLS as f64, FREEDOM);
+/// A draw of Student's t distribution of so many dimensions, with ln of its
+/// density.
+fn student(count: usize, rng: &mut Rng) -> Result<(DVector<f64>, f64)> {
+    let (n, k) = (count as f64, FREEDOM);
     let law = ChiSquared::new(k)
         .map_err(|e| Error::inference(format!("degrees of freedom: {e}")))?;
     let shrink = (k / law.sample(rng)).sqrt();
-    let white = DVector::from_fn(CELLS, |_, _| {
+    let white = DVector::from_fn(count, |_, _| {
         let normal: f64 = StandardNormal.sample(rng);
         shrink * normal
     });

@@ -61,4 +61,13 @@ impl Process {
         let factor = covariance.cholesky().map(|factor| factor.unpack());
         factor.ok_or_else(|| Error::inference("no such Gaussian process"))
     }
+
+    /// The same with one wave more: a force that is the same along the whole
+    /// run, beforehand as large as the others are in any place.
+    pub(super) fn factor_with_level(
+        &self,
+        extent: &Extent,
+    ) -> Result<DMatrix<f64>> {
+        Ok(self.factor(extent)?.insert_column(CELLS, self.size()))
+    }
 }

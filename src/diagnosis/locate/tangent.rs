@@ -46,7 +46,7 @@ impl Cells<'_, '_> {
     }
 }
 
-/// ln of a standard normal density of as many dimensions as there are cells.
+/// ln of a standard normal density.
 pub(super) fn log_normal(x: &DVector<f64>) -> f64 {
     let n = x.len() as f64;
     -0.5 * (x.norm_squared() + n * std::f64::consts::TAU.ln())
@@ -107,7 +107,7 @@ impl Tangent {
         factor: &DMatrix<f64>,
         own: &DVector<f64>,
     ) -> Option<Waves> {
-        let n = CELLS;
+        let n = factor.ncols();
         let precision = DMatrix::identity(n, n)
             + factor.tr_mul(&(&self.of_force * factor));
         let precision = precision.cholesky()?;

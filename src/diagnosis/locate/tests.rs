@@ -4,6 +4,7 @@
 use nalgebra::{DMatrix, DVector};
 use rand_distr::{Distribution, StandardNormal};
 
+use super::process::Process;
 use super::*;
 use crate::diagnosis::evidence::fit::fit;
 use crate::draws::log_sum_exp;
@@ -101,27 +102,79 @@ impl Linear {
         })
     }
 
-    /// The same over the process, by the rectangle rule: exact to far below
-    /// what the draws allow.
+    /// The same over the process.
     fn integrated(&self) -> (f64, DVector<f64>) {
-        const STEP: f64 = 0.2;
-        let nodes: Vec<f64> =
-            (-20..=20).map(|i| STEP * f64::from(i)).collect();
-        let mut found = Vec::new();
-        for &length in &nodes {
-            for &size in &nodes {
-                let process = Process(length, size);
-                let (log, mean) = self.given(&self.covariance(process));
-                let area = 2.0 * STEP.ln();
-                found.push((log + process.log_prior() + area, mean));
-            }
+        over_processes(|process| self.given(&self.covariance(process)))
+    }
+
+    /// The mean of mu and of its square, with a level in the force.
+    fn mu_with_level(&self) -> DVector<f64> {
+        let cos = DEGREES.to_radians().cos();
+        let times = self.adds.column_sum();
+        let friction = GRAVITY * cos * MU.1 * times;
+        let given = |process: Process| {
+            let level = process.size().powi(2);
+            let covariance = self.covariance(process).add_scalar(level);
+            let across = &covariance * self.adds.transpose();
+            let all = &self.known + &self.adds * &across;
+            let solved = all.cholesky().unwrap().solve(&friction);
+            let mean = MU.0 - MU.1 * solved.dot(&self.off);
+            let variance = MU.1 * MU.1 * (1.0 - solved.dot(&friction));
+            let moments =
+                DVector::from_vec(vec![mean, mean * mean + variance]);
+            (self.given(&covariance).0, moments)
+        };
+        over_processes(given).1
+    }
+}
+
+/// The evidence and a mean over the process, from those at each, by the
+/// rectangle rule: exact to far below what the draws allow.
+fn over_processes(
+    at: impl Fn(Process) -> (f64, DVector<f64>),
+) -> (f64, DVector<f64>) {
+    const STEP: f64 = 0.2;
+    let nodes: Vec<f64> = (-20..=20).map(|i| STEP * f64::from(i)).collect();
+    let mut found = Vec::new();
+    for &length in &nodes {
+        for &size in &nodes {
+            let process = Process(length, size);
+            let (log, mean) = at(process);
+            let area = 2.0 * STEP.ln();
+            found.push((log + process.log_prior() + area, mean));
         }
-        let total = log_sum_exp(found.iter().map(|(log, _)| *log));
-        let zero = DVector::zeros(CELLS);
-        let mean = found
-            .iter()
-            .fold(zero, |sum, (log, mean)| sum + (log - total).exp() * mean);
-        (total, mean)
+    }
+    let total = log_sum_exp(found.iter().map(|(log, _)| *log));
+    let zero = DVector::zeros(found[0].1.len());
+    let mean = found
+        .iter()
+        .fold(zero, |sum, (log, mean)| sum + (log - total).exp() * mean);
+    (total, mean)
+}
+
+#[test]
+fn with_the_rest_left_open_mu_is_what_linear_algebra_says() {
+    let program = pushed();
+    let moments = Linear::of(&program).mu_with_level();
+    let (mean, sd) = (moments[0], (moments[1] - moments[0].powi(2)).sqrt());
+    let none =
+        fit(&program, &[], &LaplaceMixture::default(), Seed::new(1)).unwrap();
+    let extent = program.0.extent();
+    for seed in 1..=3 {
+        let seed = Seed::new(seed);
+        let force = locate(&program, &extent, Axis::Time, &none, seed);
+        let force = [force.unwrap()];
+        let draws = own_draws(&program, &extent, &force, seed.child(9));
+        let draws = draws.unwrap().pooled(0);
+        let n = draws.len() as f64;
+        let found = draws.iter().sum::<f64>() / n;
+        let square = draws.iter().map(|mu| (mu - found).powi(2)).sum::<f64>();
+        // 400 draws of weights that are worth a hundred at least: four
+        // standard errors of a mean are 0.4 sd, of an sd 0.28 of it.
+        let off = (found - mean) / sd;
+        assert!(off.abs() < 0.4, "seed {seed:?}: {off} sd");
+        let ratio = (square / n).sqrt() / sd;
+        assert!((0.72..1.28).contains(&ratio), "seed {seed:?}: {ratio}");
     }
 }
 

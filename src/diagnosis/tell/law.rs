@@ -1,6 +1,7 @@
 //! The friction law's parameters in words: as they were, corrected, and with
 //! the rest of the physics left open.
 
+use crate::diagnosis::hypothesis::UNKNOWN;
 use crate::diagnosis::tell::phrases::{
     interval, is_corrected, joined, with_unit,
 };
@@ -10,6 +11,14 @@ use crate::report::text::plain;
 
 /// How many parameters are told.
 const TOLD: usize = 2;
+
+/// How many sd a value may lie off the median of what is likely of it when the
+/// rest is left open: one in a hundred right values lies further off. The 90 %
+/// interval would doubt one in ten right ones.
+const APART: f64 = 2.576;
+
+/// How many sd the 5 % and the 95 % quantile of a normal distribution lie off.
+const TAIL: f64 = 1.645;
 
 /// What to use for the law's parameters; `None` where nothing is known of
 /// them, or several events have each their own: the page has these.
@@ -42,13 +51,12 @@ pub(super) fn law(d: &Diagnosis) -> Option<String> {
             (&law.as_it_was, "As calibrated, ", nothing, "calibrated")
         }
     };
-    let end = match agree(told, open) {
-        true if d.weak => format!(
-            "that agrees, but the verdict is weak, so use the {value} with \
-             the force"
+    let end = match (agree(told, open), doubt(d)) {
+        (true, None) => format!("that agrees, so use the {which} {value}"),
+        (true, Some(doubt)) => format!(
+            "that agrees, but {doubt}, so use the {value} with the force"
         ),
-        true => format!("that agrees, so use the {which} {value}"),
-        false => {
+        (false, _) => {
             format!("that does not agree, so use the {value} with the force")
         }
     };
@@ -73,11 +81,27 @@ fn values(all: &[ParameterSummary], named: bool) -> String {
     joined(&all, "and")
 }
 
-/// Whether each is within what is likely of it when the rest is left open.
+/// What speaks against what was selected, or calibrated, although its values
+/// agree.
+fn doubt(d: &Diagnosis) -> Option<&'static str> {
+    // Several terms then imitate a force that none of them is.
+    let imitates = d.group.first().is_some_and(|name| name == UNKNOWN);
+    match (d.weak, imitates && is_corrected(d)) {
+        (true, _) => Some("the verdict is weak"),
+        (false, true) => {
+            Some("no mechanism alone explains as much as that force")
+        }
+        (false, false) => None,
+    }
+}
+
+/// Whether each is within what is possible of it when the rest is left open.
 fn agree(told: &[ParameterSummary], open: &[ParameterSummary]) -> bool {
-    told.iter()
-        .zip(open)
-        .all(|(p, open)| (open.q05..=open.q95).contains(&p.q50))
+    told.iter().zip(open).all(|(p, open)| {
+        let off = p.q50 - open.q50;
+        let tail = if off < 0.0 { open.q05 } else { open.q95 };
+        off.abs() <= APART / TAIL * (tail - open.q50).abs()
+    })
 }
 
 #[cfg(test)]
@@ -117,11 +141,18 @@ mod tests {
         assert!(fits.contains(was), "{fits}");
         assert!(fits.contains("it is 0.300 (0.250 to 0.360): that agrees"));
         assert!(fits.ends_with("use the corrected value."), "{fits}");
-        let off = told(Verdict::MissingPhysics, Some(0.24));
+        let apart = told(Verdict::MissingPhysics, Some(0.24));
+        assert!(apart.ends_with("use the corrected value."), "{apart}");
+        let off = told(Verdict::MissingPhysics, Some(0.22));
         assert!(off.ends_with("use the value with the force."), "{off}");
         let weak = diagnosis(Verdict::MissingPhysics, Some(0.31));
         let weak = law(&Diagnosis { weak: true, ..weak }).unwrap();
         assert!(weak.contains("weak, so use the value with"), "{weak}");
+        let imitated = diagnosis(Verdict::MissingPhysics, Some(0.31));
+        let group = vec![UNKNOWN.to_owned()];
+        let imitated = Diagnosis { group, ..imitated };
+        let imitated = law(&imitated).unwrap();
+        assert!(imitated.contains("that force, so use the value with"));
         let alone = told(Verdict::Adequate, None);
         assert!(alone.starts_with("As calibrated, mu is 0.2"), "{alone}");
         assert!(alone.ends_with("use the value with the force."), "{alone}");
