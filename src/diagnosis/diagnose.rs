@@ -109,6 +109,26 @@ struct Decision {
 
 impl Decision {
     /// What would do nearly as well as what was decided.
+    /// Whether the errors are all that is corrected.
+    fn takes_noise(&self) -> bool {
+        self.verdict == Verdict::Errors && self.withheld.is_none()
+    }
+
+    /// The noise of the corrected model: the named one where nothing is wrong,
+    /// or where another makes the fit worse.
+    fn noise<P: Program>(
+        &self,
+        row: &Row<'_, P>,
+        options: &Options,
+    ) -> String {
+        let other = match self.verdict {
+            Verdict::Adequate => options.infers_noise,
+            Verdict::Errors => self.takes_noise(),
+            _ => true,
+        };
+        if other { row.noisy.name.clone() } else { options.noise.clone() }
+    }
+
     fn rivals(&self, all: &[Box<dyn Mechanism>], none: &Fit) -> Vec<Rival> {
         let of = |c: &Chosen| c.rivals(all, none);
         let mut rivals = self.chosen.as_ref().map(of).unwrap_or_default();
@@ -222,7 +242,7 @@ impl<P: Program> Subject<'_, P> {
             mechanisms: judged.clone(),
             withheld: decision.withheld.clone(),
             noise: decision.noises.clone(),
-            selected_noise: selected_noise(*verdict, row, options),
+            selected_noise: decision.noise(row, options),
             law,
             ..compared
         };
@@ -306,27 +326,34 @@ impl<P: Program> Subject<'_, P> {
         Ok(Decision { judged, noises, verdict, row, chosen, equal, withheld })
     }
 
-    /// What was chosen, where the posterior mean with it misses the recording
-    /// by more than without: then it explains the errors rather than the
-    /// motion, and a corrected model must not fit worse.
+    /// What was chosen, terms or another noise alone, where the posterior mean
+    /// with it misses the recording by more than without: then it explains the
+    /// errors rather than the motion, and a corrected model must not fit
+    /// worse.
     fn withheld(
         &self,
         table: &Table<'_, P>,
         decision: &Decision,
     ) -> Result<Option<Withheld>> {
         let (events, none) = (&self.events, &table.as_it_was()?.none);
-        let Some(chosen) = &decision.chosen else { return Ok(None) };
-        let mechanisms = chosen.mechanisms(&self.all);
-        let noisy = table.rows[decision.row].noisy.program();
+        let noisy = &table.rows[decision.row].noisy;
+        let (mechanisms, fit) = match &decision.chosen {
+            Some(chosen) => (chosen.mechanisms(&self.all), &chosen.fit),
+            None if decision.verdict == Verdict::Errors => {
+                (Vec::new(), &noisy.none)
+            }
+            None => return Ok(None),
+        };
         let rmse = BeforeAfter {
             before: posterior_rmse(self.program, events, &[], none)?,
-            after: posterior_rmse(noisy, events, &mechanisms, &chosen.fit)?,
+            after: posterior_rmse(noisy.program(), events, &mechanisms, fit)?,
         };
         if !rmse.grows() {
             return Ok(None);
         }
         let names = mechanisms.iter().map(|m| m.name().to_owned()).collect();
-        Ok(Some(Withheld { names, rmse }))
+        let noise = noisy.name.clone();
+        Ok(Some(Withheld { names, noise, rmse }))
     }
 
     /// Where the mismatch is, and what the corrected model is.
@@ -465,24 +492,12 @@ fn corrected_model<'a, P>(
     let (mechanisms, fit, rough) = match (&decision.chosen, free) {
         (Some(chosen), _) => (chosen.mechanisms(all), &chosen.fit, false),
         (None, Some((force, fit))) => (vec![force.as_ref()], fit, true),
-        (None, None) if decision.verdict == Verdict::Errors => {
+        (None, None) if decision.takes_noise() => {
             (Vec::new(), &row.noisy.none, false)
         }
         (None, None) => return None,
     };
     Some(FittedModel { mechanisms, fit, first: seed.child(40), rough })
-}
-
-/// The noise of the corrected model: the named one where nothing is wrong.
-fn selected_noise<P: Program>(
-    verdict: Verdict,
-    row: &Row<'_, P>,
-    options: &Options,
-) -> String {
-    match verdict {
-        Verdict::Adequate if !options.infers_noise => options.noise.clone(),
-        _ => row.noisy.name.clone(),
-    }
 }
 
 /// The free-form force along the axis with the most evidence.

@@ -104,8 +104,10 @@ impl Diagnosis {
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct Withheld {
-    /// The names of the mechanisms.
+    /// The names of the mechanisms; empty where only other errors are.
     pub names: Vec<String>,
+    /// The noise that has the evidence.
+    pub noise: String,
     /// The root mean square error without and with them \[recorded unit\].
     pub rmse: BeforeAfter,
 }

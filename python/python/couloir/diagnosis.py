@@ -83,6 +83,7 @@ class Withheld:
     """What the evidence asks for, and makes the fit worse."""
 
     names: list[str]
+    noise: str
     rmse_before: float
     rmse_after: float
 

@@ -189,6 +189,7 @@ impl Diagnosis {
             "selected": self.selected,
             "withheld": self.withheld.as_ref().map(|withheld| json!({
                 "names": withheld.names,
+                "noise": withheld.noise,
                 "rmse_before": withheld.rmse.before,
                 "rmse_after": withheld.rmse.after,
             })),

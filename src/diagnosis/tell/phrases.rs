@@ -12,7 +12,8 @@ use crate::report::text::{is_synthetic, plain, unit};
 /// Whether there is a corrected model to compare with: something was added to
 /// it, or its errors are taken for others.
 pub(crate) fn is_corrected(d: &Diagnosis) -> bool {
-    !d.selected.is_empty() || d.verdict == Verdict::Errors
+    let errors = d.verdict == Verdict::Errors && d.withheld.is_none();
+    errors || !d.selected.is_empty()
 }
 
 /// A mechanism as a snow scientist would call it.

@@ -7,6 +7,7 @@ use crate::diagnosis::tell::phrases::{
 };
 use crate::diagnosis::{BeforeAfter, Diagnosis};
 use crate::report::digits::significant;
+use crate::report::text::plain;
 
 /// The errors that grow although the evidence does, with what they are called.
 fn worse(d: &Diagnosis) -> Vec<(&'static str, BeforeAfter)> {
@@ -32,11 +33,15 @@ pub(crate) fn is_weak(d: &Diagnosis) -> bool {
 pub(crate) fn withheld(d: &Diagnosis) -> Option<String> {
     let withheld = d.withheld.as_ref()?;
     let BeforeAfter { before, after } = withheld.rmse;
+    let what = match withheld.names[..] {
+        [] => format!("Errors of another kind ({})", plain(&withheld.noise)),
+        _ => all_called(d, &withheld.names, "together with"),
+    };
     Some(format!(
         "{} would have the most evidence, but the root mean square error \
          would grow from {} to {}: what makes the fit worse is not added, and \
          this verdict is weak.",
-        capital(&all_called(d, &withheld.names, "together with")),
+        capital(&what),
         significant(before, 2),
         with_unit(&significant(after, 2), recorded_in(d)),
     ))
@@ -65,7 +70,7 @@ pub(crate) fn disagreement(d: &Diagnosis) -> Option<String> {
 mod tests {
     use super::*;
     use crate::diagnosis::fixture::diagnosis;
-    use crate::diagnosis::{Withheld, in_words};
+    use crate::diagnosis::{Verdict, Withheld, in_words};
 
     #[test]
     fn a_fit_that_grows_worse_is_weak_and_told() {
@@ -83,7 +88,8 @@ mod tests {
         let mut d = diagnosis();
         let names = std::mem::take(&mut d.selected);
         let rmse = BeforeAfter { before: 0.68, after: 0.85 };
-        d.withheld = Some(Withheld { names, rmse });
+        let noise = "ou + tails".to_owned();
+        d.withheld = Some(Withheld { names, noise, rmse });
         assert!(is_weak(&d));
         let said = withheld(&d).unwrap();
         let told = "would grow from 0.68 to 0.85 m/s: what makes the fit";
@@ -91,6 +97,14 @@ mod tests {
         let words = in_words(&d);
         assert!(words.contains(&said));
         assert!(words[0].contains("may"), "{}", words[0]);
+        // Other errors alone.
+        d.verdict = Verdict::Errors;
+        d.withheld.iter_mut().for_each(|withheld| withheld.names.clear());
+        let words = in_words(&d).join(" ");
+        let told = "Errors of another kind (ou + tails) would have the most";
+        assert!(words.contains(told), "{words}");
+        assert!(words.contains("may not be iid ones"), "{words}");
+        assert!(words.contains("Nothing is added"), "{words}");
     }
 
     #[test]

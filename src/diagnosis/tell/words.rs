@@ -48,7 +48,9 @@ pub fn in_words(d: &Diagnosis) -> Vec<String> {
         said.extend(law(d));
     } else {
         said.extend(d.mismatch.iter().take(TOLD).map(|m| difference(d, m)));
-        if d.verdict != Verdict::Errors {
+        if d.verdict == Verdict::Errors {
+            said.extend(withheld(d));
+        } else {
             said.push(explanation(d));
         }
         said.extend(noise(d));
@@ -96,9 +98,9 @@ fn verdict(d: &Diagnosis) -> String {
             if d.withheld.is_some() { "may not be" } else { "is not" }
         ),
         Verdict::Errors => format!(
-            "No force is missing from {}: the errors of {event} are not {} \
-             ones.",
+            "No force is missing from {}: the errors of {event} {} {} ones.",
             friction(&d.baseline),
+            if d.withheld.is_some() { "may not be" } else { "are not" },
             plain(&d.baseline.noise)
         ),
         Verdict::Unexplained => format!(
