@@ -190,8 +190,8 @@ impl<P: Program> Subject<'_, P> {
         let named = table.named().filter(|_| !options.infers_noise);
         let row = taken(named, &self.log_of_noises(table, options));
         let seed = seed.child(2);
-        let (care, row_of) = (Care::DECIDING, &mut table.rows[row]);
-        row_of.fill(&self.extent, &self.all, care, seed, progress)?;
+        let (extent, care) = (&self.extent, Care::DECIDING);
+        table.fill(row, extent, &self.all, care, seed, progress)?;
         // Of those that have all fits by now.
         let mut logs = self.log_of_noises(table, options);
         for (log, row) in logs.iter_mut().zip(&table.rows) {

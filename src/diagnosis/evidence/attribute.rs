@@ -96,8 +96,8 @@ pub fn attribute<P: Program>(
     progress: &dyn Progress,
 ) -> Result<Attribution> {
     let none = fit(program, &[], &LaplaceMixture::default(), seed.child(0))?;
-    let care = Care::THOROUGH;
-    attribute_beside(program, none, extent, catalogue, care, seed, progress)
+    let known = Known { places: &[], care: Care::THOROUGH };
+    attribute_beside(program, none, extent, catalogue, known, seed, progress)
 }
 
 /// The same beside the fit of the model as it is.
@@ -109,7 +109,7 @@ pub(crate) fn attribute_beside<P: Program>(
     none: Fit,
     extent: Option<&Extent>,
     catalogue: &[Box<dyn Mechanism>],
-    care: Care,
+    Known { places, care }: Known<'_>,
     seed: Seed,
     progress: &dyn Progress,
 ) -> Result<Attribution> {
@@ -125,10 +125,21 @@ pub(crate) fn attribute_beside<P: Program>(
     progress.begin("weighing mechanisms", Some(catalogue.len() as u64));
     let weighing = Weighing { program, catalogue, care, seed };
     let candidates =
-        weighing.weighed(none.log_evidence, progress, |mechanism, seed| {
-            single(program, mechanism, &owns, care, seed)
+        weighing.weighed(none.log_evidence, progress, |i, seed| {
+            let known = places.get(i).map_or(&[][..], Vec::as_slice);
+            let mechanism = catalogue[i].as_ref();
+            single(program, mechanism, (&owns, known), care, seed)
         })?;
     Ok(Attribution { none, forces, candidates })
+}
+
+/// What is known of a catalogue before it is weighed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Known<'k> {
+    /// Likely places with each mechanism, on the real line; none where there
+    /// is no list.
+    pub(crate) places: &'k [Vec<Vec<f64>>],
+    pub(crate) care: Care,
 }
 
 /// Mechanisms that are weighed one by one, in parallel.
@@ -150,7 +161,7 @@ impl<P: Program> Weighing<'_, P> {
         &self,
         known: f64,
         progress: &dyn Progress,
-        look: impl Fn(&dyn Mechanism, Seed) -> Result<Prospect> + Sync,
+        look: impl Fn(usize, Seed) -> Result<Prospect> + Sync,
     ) -> Result<Vec<Fit>> {
         let looked = self.looked(progress, look)?;
         let pursued = match self.care.is_quick {
@@ -164,12 +175,11 @@ impl<P: Program> Weighing<'_, P> {
     fn looked(
         &self,
         progress: &dyn Progress,
-        look: impl Fn(&dyn Mechanism, Seed) -> Result<Prospect> + Sync,
+        look: impl Fn(usize, Seed) -> Result<Prospect> + Sync,
     ) -> Result<Vec<Prospect>> {
         let all = self.catalogue.par_iter().enumerate();
         all.map(|(i, mechanism)| {
-            let mechanism = mechanism.as_ref();
-            let found = look(mechanism, self.seed_of(i))
+            let found = look(i, self.seed_of(i))
                 .map_err(|error| error.within(mechanism.name()));
             progress.advance(1);
             found
@@ -252,11 +262,12 @@ impl Owns {
         let likely = forces
             .iter()
             .max_by(|a, b| a.log_bayes_factor.total_cmp(&b.log_bayes_factor));
-        let open = likely.map(FreeForce::middle_of_own);
+        let open = likely.and_then(FreeForce::likeliest_own);
         let rows = none.draws.thinned(DRAWN).into_iter();
         let drawn: Vec<Vec<f64>> =
             rows.map(|row| posterior.line(row)).collect::<Result<_>>()?;
-        let best = [none.own().to_vec()].into_iter().chain(open).collect();
+        let best = [none.own()].into_iter().chain(open);
+        let best = best.map(<[f64]>::to_vec).collect();
         Ok(Self { best, tails: tails(drawn) })
     }
 }
@@ -277,19 +288,22 @@ fn tails(mut drawn: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Looks at a single mechanism, with the model's own parameters beginning at
-/// each of some places.
+/// Looks at a single mechanism, from places that are known to be likely, and
+/// with the model's own parameters beginning at each of some places.
 fn single<P: Program>(
     program: &P,
     mechanism: &dyn Mechanism,
-    owns: &Owns,
+    (owns, known): (&Owns, &[Vec<f64>]),
     care: Care,
     seed: Seed,
 ) -> Result<Prospect> {
     let with = With::new(program, &[mechanism]);
     let posterior = Posterior::new(&with)?;
-    let mut space =
-        SearchSpace { prior_starts: PRIOR_STARTS, ..SearchSpace::default() };
+    let mut space = SearchSpace {
+        prior_starts: PRIOR_STARTS,
+        starts: known.to_vec(),
+        ..SearchSpace::default()
+    };
     for (i, own) in owns.best.iter().enumerate() {
         let seed = seed.child(0).child(i as u64);
         space.extend(around(&posterior, mechanism, None, &[], own, seed)?);

@@ -35,6 +35,22 @@ pub(crate) fn gain<P: Program>(
     Ok(if gain.is_finite() { gain } else { f64::NEG_INFINITY })
 }
 
+/// Where a model with mechanisms is likeliest under one noise, as places under
+/// another, with what only the second has at some places.
+///
+/// # Errors
+/// A model that fails.
+pub(crate) fn likeliest<P: Program>(
+    (from, fit): (&P, &Fit),
+    (to, owns): (&P, [&[f64]; 2]),
+    mechanisms: &[&dyn Mechanism],
+) -> Result<Vec<Vec<f64>>> {
+    let (old, new) = (With::new(from, mechanisms), With::new(to, mechanisms));
+    let (old, new) = (Posterior::new(&old)?, Posterior::new(&new)?);
+    let owns = owns.map(|own| (fit.added, own));
+    Ok(carried(&old, std::slice::from_ref(&fit.best), &new, &owns))
+}
+
 /// From how many draws under one noise climbs start under the next.
 const CARRIED: usize = 8;
 

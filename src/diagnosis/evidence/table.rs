@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::attribute::{Attribution, Care, attribute_beside};
-use super::carried::gain;
+use super::attribute::{Attribution, Care, Known, attribute_beside};
+use super::carried::{gain, likeliest};
 use super::noises::{Noises, Noisy};
 use crate::error::{Error, Result};
 use crate::infer::Progress;
@@ -50,7 +50,7 @@ impl<'a, P: Program> Table<'a, P> {
         let mut kept = kept.into_iter();
         let first = Row::bare(kept.next().ok_or_else(no_noise)?);
         let mut table = Self { rows: vec![first], dropped };
-        table.rows[0].fill(extent, catalogue, care, seed, progress)?;
+        table.fill(0, extent, catalogue, care, seed, progress)?;
         progress.begin("weighing them under other noises", None);
         for (i, noisy) in kept.enumerate() {
             let seed = seed.child(100 + i as u64);
@@ -80,6 +80,49 @@ impl<'a, P: Program> Table<'a, P> {
         others.map(|(_, other)| &other.noisy).collect()
     }
 
+    /// Makes all fits under the noise of a row, where there are none yet. A
+    /// search begins where other rows found each mechanism too: one noise may
+    /// swallow what another leaves to be explained.
+    ///
+    /// # Errors
+    /// An improper prior, or a model that fails.
+    pub(crate) fn fill(
+        &mut self,
+        row: usize,
+        extent: &Extent,
+        catalogue: &[Box<dyn Mechanism>],
+        care: Care,
+        seed: Seed,
+        progress: &dyn Progress,
+    ) -> Result<()> {
+        let Some(known) = self.known(row, catalogue)? else { return Ok(()) };
+        let known = Known { places: &known, care };
+        self.rows[row].fill(extent, catalogue, known, seed, progress)
+    }
+
+    /// Where other rows found each mechanism, as places of a row without fits.
+    fn known(
+        &self,
+        row: usize,
+        catalogue: &[Box<dyn Mechanism>],
+    ) -> Result<Option<Vec<Vec<Vec<f64>>>>> {
+        let to = &self.rows[row];
+        if to.found.is_some() {
+            return Ok(None);
+        }
+        let mut known = vec![Vec::new(); catalogue.len()];
+        for from in &self.rows {
+            let Some(found) = &from.found else { continue };
+            let each = catalogue.iter().zip(&found.candidates);
+            for (known, (mechanism, fit)) in known.iter_mut().zip(each) {
+                let from = (from.noisy.program(), fit);
+                let to = (to.noisy.program(), to.noisy.own());
+                known.extend(likeliest(from, to, &[mechanism.as_ref()])?);
+            }
+        }
+        Ok(Some(known))
+    }
+
     /// Whether the named noise is kept.
     pub(crate) fn keeps_named(&self) -> bool {
         self.dropped.is_none()
@@ -97,27 +140,21 @@ impl<'a, P: Program> Row<'a, P> {
         Self { noisy, candidates: Vec::new(), open, found: None }
     }
 
-    /// Makes all fits, where there are none yet.
-    ///
-    /// # Errors
-    /// An improper prior, or a model that fails.
-    pub(crate) fn fill(
+    /// Makes all fits.
+    fn fill(
         &mut self,
         extent: &Extent,
         catalogue: &[Box<dyn Mechanism>],
-        care: Care,
+        known: Known<'_>,
         seed: Seed,
         progress: &dyn Progress,
     ) -> Result<()> {
-        if self.found.is_some() {
-            return Ok(());
-        }
         let found = attribute_beside(
             self.noisy.program(),
             self.noisy.none.clone(),
             Some(extent),
             catalogue,
-            care,
+            known,
             seed,
             progress,
         )?;

@@ -212,6 +212,11 @@ fn matters(looks: &[Look], length: f64) -> bool {
     most(looks.iter()) - most(there) < NEARLY
 }
 
+/// The look with the most evidence.
+pub(super) fn highest(looks: &[Look]) -> Option<&Look> {
+    looks.iter().max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence))
+}
+
 /// ln of what the best of some looks holds.
 fn most<'l>(looks: impl Iterator<Item = &'l Look>) -> f64 {
     let logs = looks.map(|look| look.log_evidence);

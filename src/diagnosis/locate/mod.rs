@@ -31,7 +31,7 @@ pub use force::FreeForce;
 pub(super) use force::Stretch;
 use free_form::FreeForm;
 pub(super) use free_form::{FORMULA, NOUN, SAYS};
-use look::{COARSE, FINE, Look, Sought, proposal};
+use look::{COARSE, FINE, Look, Sought, highest, proposal};
 use marginal::Marginal;
 pub(crate) use open::own_draws;
 pub use process::CELLS;
@@ -148,11 +148,6 @@ pub(crate) fn outlook<P: Program>(
     let learned = learn(&marginal, mixture, GLANCE, seed.child(0))?;
     let found = integrated(&marginal, &learned, GLANCE, seed.child(1))?;
     Ok(Outlook { log: found.sum.log, own })
-}
-
-/// The look with the most evidence.
-fn highest(looks: &[Look]) -> Option<&Look> {
-    looks.iter().max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence))
 }
 
 /// A force of free form over distance on top of a model with mechanisms that
