@@ -131,6 +131,9 @@ impl Default for Climb {
     }
 }
 
+/// How far a coordinate follows another at the most.
+const FAR: f64 = 2.0;
+
 /// A place with its slope and trace.
 type Place<L> = (DVector<f64>, Slope, <L as Landscape>::Trace);
 
@@ -269,6 +272,23 @@ impl Peak {
         Some(
             self.height + 0.5 * n * std::f64::consts::TAU.ln() - 0.5 * log_det,
         )
+    }
+
+    /// Goes along one of the coordinates that are held; those not held follow
+    /// as in the normal approximation.
+    pub(super) fn stride(&mut self, held: &[usize], along: usize, by: f64) {
+        let (n, along) = (self.line.len(), held[along]);
+        self.line[along] += by;
+        let free: Vec<usize> = (0..n).filter(|i| !held.contains(i)).collect();
+        let rows = self.precision.select_rows(&free);
+        let across = rows.column(along) * by;
+        let inner = rows.select_columns(&free).cholesky();
+        let Some(follows) = inner.map(|inner| inner.solve(&across)) else {
+            return;
+        };
+        for (&i, by) in free.iter().zip(follows.iter()) {
+            self.line[i] -= by.clamp(-FAR, FAR);
+        }
     }
 
     /// The squared distance of a place, in units of the peak's width.

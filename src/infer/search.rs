@@ -98,6 +98,7 @@ pub(super) fn outlook(
 }
 
 /// A held place with where the other coordinates come to.
+#[derive(Clone)]
 struct Looked<'s> {
     grid: &'s HeldGrid,
     spacing: Vec<f64>,
@@ -172,15 +173,16 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
     /// place held, and from the best with all coordinates. What is left had
     /// no more than a glance.
     fn look(&mut self, space: &'s SearchSpace) -> Result<Vec<Looked<'s>>> {
-        let places = space.grids.iter().flat_map(|grid| {
-            grid.places.iter().map(move |place| (grid, place))
+        let (posterior, negligible) =
+            (self.posterior, self.schedule.negligible);
+        let grids = space.grids.par_iter().map(|grid| {
+            let glanced = glanced(posterior, grid)?;
+            match grid.held.len() {
+                1 => walked(posterior, glanced, negligible),
+                _ => Ok(glanced),
+            }
         });
-        let places: Vec<_> = places.collect();
-        let posterior = self.posterior;
-        let found = places
-            .into_par_iter()
-            .map(|(grid, place)| glance(posterior, grid, place))
-            .collect::<Result<Vec<_>>>()?;
+        let found = grids.collect::<Result<Vec<_>>>()?;
         let mut found: Vec<Looked<'s>> = found.into_iter().flatten().collect();
         by_height(&mut found);
         let mut promising = spread(&mut found, self.schedule.promising);
@@ -362,6 +364,55 @@ fn spread<'s>(found: &mut Vec<Looked<'s>>, most: usize) -> Vec<Looked<'s>> {
     taken
 }
 
+/// Where one damped step leads from each place of a grid.
+fn glanced<'s>(
+    posterior: &Posterior<'_>,
+    grid: &'s HeldGrid,
+) -> Result<Vec<Looked<'s>>> {
+    let places = grid.places.par_iter();
+    let found = places.map(|place| glance(posterior, grid, place));
+    let found = found.collect::<Result<Vec<_>>>()?;
+    Ok(found.into_iter().flatten().collect())
+}
+
+/// Where places along one coordinate lead when each is come to from the one
+/// before, outwards from the highest, until they hold so much less than the
+/// best. A force of 4 m/s2 stops a mass whose friction is that of a run without
+/// it, and no climb begins there.
+fn walked<'s>(
+    posterior: &Posterior<'_>,
+    mut places: Vec<Looked<'s>>,
+    negligible: f64,
+) -> Result<Vec<Looked<'s>>> {
+    let at = |one: &Looked<'_>| one.peak.line[one.grid.held[0]];
+    places.sort_by(|a, b| at(a).total_cmp(&at(b)));
+    let height = |one: &Looked<'_>| one.peak.height;
+    let highest = places.iter().map(height).enumerate();
+    let highest = highest.max_by(|(_, a), (_, b)| a.total_cmp(b));
+    let Some((first, mut best)) = highest else { return Ok(places) };
+    let ways: [Vec<usize>; 2] =
+        [(first + 1..places.len()).collect(), (0..first).rev().collect()];
+    for way in ways {
+        let mut from = places[first].clone();
+        for to in way {
+            let by = at(&places[to]) - at(&from);
+            let mut next = places[to].clone();
+            next.peak = from.peak;
+            next.peak.stride(&next.grid.held, 0, by);
+            next.climb_on(posterior, STEPS_ASIDE)?;
+            if height(&next) > height(&places[to]) {
+                places[to] = next;
+            }
+            from = places[to].clone();
+            best = best.max(height(&from));
+            if best - height(&from) > negligible {
+                break;
+            }
+        }
+    }
+    Ok(places)
+}
+
 /// Where one damped step leads from a held place; `None` where there is no
 /// density.
 fn glance<'s>(
@@ -447,8 +498,8 @@ impl<'s> Looked<'s> {
         let ways = (0..self.spacing.len()).flat_map(|k| [(k, 1.0), (k, -1.0)]);
         ways.map(|(along, sign)| {
             let mut peak = self.peak.clone();
-            let held = self.grid.held[along];
-            peak.line[held] += sign * self.spacing[along];
+            let held = &self.grid.held;
+            peak.stride(held, along, sign * self.spacing[along]);
             let spacing = self.spacing.clone();
             let (grid, log) = (self.grid, f64::NEG_INFINITY);
             let to = Self { grid, spacing, peak, log, surrounded: false };

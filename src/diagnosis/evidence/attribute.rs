@@ -45,8 +45,10 @@ fn climbs(unknowns: usize) -> usize {
     }
 }
 
-/// How many climbs of a single mechanism start from draws of the whole prior.
-const PRIOR_STARTS: usize = 4;
+/// How many climbs start from draws of the whole prior. All other starts have
+/// the model's own parameters at places that are likely without the mechanism,
+/// and with it they may be far off.
+pub(super) const PRIOR_STARTS: usize = 12;
 
 /// How far below the best, in ln, evidences still matter.
 #[derive(Debug, Clone, Copy)]
@@ -246,6 +248,10 @@ struct Owns {
     /// At their best with nothing added, where errors may explain what is
     /// missing, and at their best with a force of free form, where it does.
     best: Vec<Vec<f64>>,
+    /// In the middle of what they are with the force along each axis: between
+    /// its peaks, where a mechanism that is like the force at neither has its
+    /// own.
+    between: Vec<Vec<f64>>,
     /// In the tails of each, with nothing added: the memory of the errors,
     /// above all, decides which stretches they hide.
     tails: Vec<Vec<f64>>,
@@ -268,7 +274,8 @@ impl Owns {
             rows.map(|row| posterior.line(row)).collect::<Result<_>>()?;
         let best = [none.own()].into_iter().chain(open);
         let best = best.map(<[f64]>::to_vec).collect();
-        Ok(Self { best, tails: tails(drawn) })
+        let between = forces.iter().map(FreeForce::middle_of_own).collect();
+        Ok(Self { best, between, tails: tails(drawn) })
     }
 }
 
@@ -308,6 +315,10 @@ fn single<P: Program>(
         let seed = seed.child(0).child(i as u64);
         space.extend(around(&posterior, mechanism, None, &[], own, seed)?);
     }
+    for (i, own) in owns.between.iter().enumerate() {
+        let seed = seed.child(2).child(i as u64);
+        space.starts.extend(anywhere(mechanism, &[], own, seed));
+    }
     let tails = if care.is_quick { &[][..] } else { &owns.tails };
     for own in tails {
         let coarse = edge_grids(&posterior, mechanism, &[], own, COARSE)?;
@@ -329,13 +340,23 @@ pub(super) fn around(
     after: &[f64],
     seed: Seed,
 ) -> Result<SearchSpace> {
-    let unknowns = mechanism.unknowns();
-    let joined = |place: &[f64]| [before, place, after].concat();
+    let known = known.map(|place| [before, place, after].concat());
+    let anywhere = anywhere(mechanism, before, after, seed.child(0));
+    let starts = known.into_iter().chain(anywhere).collect();
     let mut grids = edge_grids(posterior, mechanism, before, after, FINE)?;
-    let climbs = climbs(unknowns.len());
-    let anywhere = spread(&unknowns, climbs, seed.child(0));
-    let places = anywhere.iter().map(|(place, _)| &place[..]);
-    let starts = known.into_iter().chain(places).map(joined).collect();
     grids.extend(even_grids(mechanism, before, after, seed.child(1)));
     Ok(SearchSpace { prior_starts: 0, starts, grids })
+}
+
+/// Places all over a mechanism's prior, all other coordinates at those before
+/// and after it.
+pub(super) fn anywhere(
+    mechanism: &dyn Mechanism,
+    before: &[f64],
+    after: &[f64],
+    seed: Seed,
+) -> Vec<Vec<f64>> {
+    let unknowns = mechanism.unknowns();
+    let places = spread(&unknowns, climbs(unknowns.len()), seed).into_iter();
+    places.map(|(place, _)| [before, &place, after].concat()).collect()
 }

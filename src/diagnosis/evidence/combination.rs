@@ -1,6 +1,6 @@
 //! Several mechanisms together, looked at quickly before they are fitted.
 
-use super::attribute::around;
+use super::attribute::{PRIOR_STARTS, anywhere, around};
 use super::fit::{Fit, Prospect, prospect};
 use crate::error::Result;
 use crate::infer::{LaplaceMixture, Precision, SearchSpace};
@@ -30,16 +30,18 @@ pub(crate) struct Combination<'a> {
     seed: Seed,
 }
 
-/// From how many starts a quick look climbs.
+/// From how many starts a quick look climbs: the best that is known, and one or
+/// two more of either mechanism.
 const STARTS: usize = 6;
 /// How far, in ln, what a search promises may fall short of an evidence.
 const SHORT: f64 = 1.0;
 
 impl<'a> Combination<'a> {
-    /// A pair: from the best of either, with the other anywhere; and from both
-    /// where the model's own parameters are those that a force of free form
-    /// leaves. Beside one mechanism the noise may have swallowed what the
-    /// other explains, and a climb from there may end where it still does.
+    /// A pair: from the best of either, with the other anywhere, both with the
+    /// model's own parameters beside that one mechanism and with those that a
+    /// force of free form leaves. Beside one mechanism the noise may have
+    /// swallowed what the other explains, and a climb from there may end where
+    /// it still does.
     ///
     /// # Errors
     /// An improper prior, or a model that fails.
@@ -73,8 +75,16 @@ impl<'a> Combination<'a> {
         );
         // The best known places first.
         space.starts.insert(1, more.starts.remove(0));
-        let both = |own| [of_a.mechanism(), of_b.mechanism(), own].concat();
-        space.starts.splice(2..2, open.map(both));
+        if let Some(open) = open {
+            let [of_a, of_b] = [of_a.mechanism(), of_b.mechanism()];
+            let beside_b = [of_b, open].concat();
+            let a_anywhere = anywhere(a, &[], &beside_b, seed.child(2));
+            let b_anywhere = anywhere(b, of_a, open, seed.child(3));
+            let both = [of_a, of_b, open].concat();
+            let at_open = [both].into_iter();
+            let at_open = at_open.chain(in_turn(a_anywhere, b_anywhere));
+            space.starts.splice(2..2, at_open);
+        }
         space.extend(more);
         Self::looked(program, mechanisms.to_vec(), space, seed.child(9))
     }
@@ -97,8 +107,9 @@ impl<'a> Combination<'a> {
         let Known { added: before, own, open, .. } = *known;
         let seed_of = seed.child(0);
         let mut space = around(&posterior, added, best, before, own, seed_of)?;
-        let all = [before, fit.mechanism(), open].concat();
-        space.starts.insert(1, all);
+        let mut at_open = vec![[before, fit.mechanism(), open].concat()];
+        at_open.extend(anywhere(added, before, open, seed.child(1)));
+        space.starts.splice(1..1, at_open);
         Self::looked(program, mechanisms, space, seed.child(9))
     }
 
@@ -110,6 +121,7 @@ impl<'a> Combination<'a> {
     ) -> Result<Self> {
         let mut few = space.clone();
         few.starts.truncate(STARTS);
+        let space = SearchSpace { prior_starts: PRIOR_STARTS, ..space };
         let quick = LaplaceMixture::within(few).quick();
         let quick = prospect(program, &mechanisms, quick, seed.child(0))?;
         let (log, most) = (quick.log(), quick.most());
@@ -141,6 +153,14 @@ impl<'a> Combination<'a> {
         let mechanisms = self.mechanisms;
         Ok(Some(Pursued { mechanisms, prospect, seed: seed.child(1) }))
     }
+}
+
+/// One of the first, one of the second, and so on; then what is left.
+fn in_turn(first: Vec<Vec<f64>>, second: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let most = first.len().max(second.len());
+    let of = |all: &[Vec<f64>], i: usize| all.get(i).cloned();
+    let each = (0..most).flat_map(|i| [of(&first, i), of(&second, i)]);
+    each.flatten().collect()
 }
 
 /// Mechanisms together after a thorough search.

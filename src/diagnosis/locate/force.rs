@@ -74,6 +74,16 @@ impl FreeForce {
 }
 
 impl FreeForce {
+    /// The medians of the model's own parameters with the force, on the real
+    /// line.
+    pub(in crate::diagnosis) fn middle_of_own(&self) -> Vec<f64> {
+        let count = self.own.first().map_or(0, Vec::len);
+        let of = |i: usize| -> Vec<f64> {
+            self.own.iter().map(|own| own[i]).collect()
+        };
+        (0..count).map(|i| median(&of(i))).collect()
+    }
+
     /// The model's own parameters where they are likeliest with the force, on
     /// the real line: at a peak, since medians may lie between two.
     pub(in crate::diagnosis) fn likeliest_own(&self) -> Option<&[f64]> {
