@@ -68,6 +68,17 @@ impl<'a> Added<'a> {
         })
     }
 
+    /// The dry friction that it takes away where it takes most, draw by draw.
+    pub(crate) fn friction_taken(&self) -> impl Iterator<Item = f64> {
+        self.values.iter().map(|own| {
+            let own: Vec<Real<Plain>> =
+                own.iter().map(|&x| Real::new(x)).collect();
+            let change = Plain::change(self.mechanism, &own);
+            let terms = change.forces.terms.iter();
+            terms.map(|term| (-term.rate.mu.value()).max(0.0)).sum()
+        })
+    }
+
     /// The force that it adds at some points of the way of one of several
     /// events, for each draw \[m/s2\]; positive drives the mass.
     pub(crate) fn forces(

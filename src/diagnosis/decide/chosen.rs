@@ -99,10 +99,27 @@ impl Chosen {
         all: &'a [Box<dyn Mechanism>],
     ) -> Vec<Added<'a>> {
         let rows = rows_of(&self.fit.draws);
-        let is_mu = |name: &String| name == "mu" || name.ends_with(".mu");
-        let mu = self.fit.draws.names().iter().position(is_mu);
-        let columns = self.columns(all).into_iter();
+        let (mu, columns) = (self.mu(), self.columns(all).into_iter());
         columns.map(|(m, own)| Added::new(m, &rows, own, mu)).collect()
+    }
+
+    /// The column of the law's dry friction.
+    fn mu(&self) -> Option<usize> {
+        let is_mu = |name: &String| name == "mu" || name.ends_with(".mu");
+        self.fit.draws.names().iter().position(is_mu)
+    }
+
+    /// Whether a law with dry friction keeps some of it wherever they act, in
+    /// most draws.
+    pub(crate) fn leaves_friction(&self, all: &[Box<dyn Mechanism>]) -> bool {
+        let Some(mu) = self.mu() else { return true };
+        let rows = rows_of(&self.fit.draws);
+        let mut left: Vec<f64> = rows.iter().map(|row| row[mu]).collect();
+        for added in self.added(all) {
+            let taken = added.friction_taken();
+            left.iter_mut().zip(taken).for_each(|(left, it)| *left -= it);
+        }
+        2 * left.iter().filter(|left| **left > 0.0).count() > left.len()
     }
 }
 

@@ -161,7 +161,11 @@ impl<'a, P: Program> Stepwise<'a, P> {
         }
     }
 
-    /// The fit of terms that may be worth so much.
+    /// The fit of terms that may be worth so much; `None` as well where they
+    /// leave the law no friction. Friction drives nothing, so beyond its end
+    /// all amounts do the same, and what has that much room in its prior seems
+    /// likely: but it puts another law in the place of the one that is asked
+    /// about.
     fn tried(&self, look: Look<'a>, hurdle: f64) -> Result<Option<Tried<'a>>> {
         let Look { which, price, terms } = look;
         let Some(found) = terms.pursued(self.program, hurdle + price)? else {
@@ -169,7 +173,8 @@ impl<'a, P: Program> Stepwise<'a, P> {
         };
         let fit = found.fit(self.program, Precision::Fair)?;
         let chosen = Chosen::new(which, fit);
-        Ok(Some(Tried { chosen, found: Some(found) }))
+        let tried = Tried { chosen, found: Some(found) };
+        Ok(Some(tried).filter(|one| one.chosen.leaves_friction(self.all)))
     }
 
     fn look(&self, chosen: &Chosen, step: &Step) -> Result<Look<'a>> {
