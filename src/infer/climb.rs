@@ -338,3 +338,34 @@ pub(super) fn climb_holding(
     let found = climb.ascend(&landscape, start, |_, _| false)?;
     Ok(found.map(Peak::of))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_held_follows_as_in_the_normal_approximation() {
+        let rows = [4.0, 1.0, 0.5, 1.0, 3.0, -0.7, 0.5, -0.7, 2.0];
+        let precision = DMatrix::from_row_slice(3, 3, &rows);
+        let covariance = precision.clone().try_inverse().unwrap();
+        let line = DVector::from_vec(vec![0.2, -0.4, 1.0]);
+        let peak = Peak { line, height: 0.0, precision };
+
+        // One held: means given its value, by the covariance.
+        let mut moved = peak.clone();
+        moved.stride(&[1], 0, 0.3);
+        for i in 0..3 {
+            let slope = covariance[(i, 1)] / covariance[(1, 1)];
+            let expected = peak.line[i] + 0.3 * slope;
+            assert!((moved.line[i] - expected).abs() < 1e-12, "{i}");
+        }
+
+        // Two held: one goes along, the other stays.
+        let mut moved = peak.clone();
+        moved.stride(&[0, 2], 1, 0.3);
+        assert_eq!(moved.line[0], peak.line[0]);
+        assert_eq!(moved.line[2], peak.line[2] + 0.3);
+        let expected = peak.line[1] + 0.3 * 0.7 / 3.0;
+        assert!((moved.line[1] - expected).abs() < 1e-12);
+    }
+}

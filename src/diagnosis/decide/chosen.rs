@@ -134,3 +134,48 @@ fn rival(
         log10_bayes_factor: (log_evidence - none.log_evidence) / LN_10,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draws::Draws;
+    use crate::mechanism::catalogue::find;
+    use crate::observe::{Event, Series};
+    use crate::physics::Track;
+
+    /// Two mechanisms chosen, with one draw of their parameters and mu.
+    fn leaves(labels: [&str; 2], names: &[&str], draw: &[f64]) -> bool {
+        let track = Track::incline(35.0, 500.0).unwrap();
+        let seen = Series::velocity(vec![1.0, 20.0], vec![2.0, 20.0]);
+        let event = Event::on(track).velocity(seen.unwrap()).build().unwrap();
+        let extent = event.extent();
+        let all = labels.map(|label| find(label, &extent, &[]).unwrap());
+        let names: Vec<String> = names.iter().map(|n| n.to_string()).collect();
+        let units = names.iter().map(|_| "1".to_owned()).collect();
+        let mut draws = Draws::new(names, units).unwrap();
+        draws.push_chain(draw.to_vec(), None).unwrap();
+        let (best, warnings) = (draw.to_vec(), Vec::new());
+        let added = all.iter().map(|m| m.unknowns().len()).sum();
+        let (log_evidence, se) = (0.0, 0.0);
+        let fit = Fit { log_evidence, se, draws, best, added, warnings };
+        Chosen::new(vec![0, 1], fit).leaves_friction(&all)
+    }
+
+    #[test]
+    fn terms_that_leave_no_friction_are_told_from_those_that_do() {
+        let labels = ["turbulent-drag", "friction-step(distance)"];
+        let names = ["drag", "delta_mu", "from", "mu"];
+        assert!(leaves(labels, &names, &[0.001, -0.1, 50.0, 0.2]));
+        assert!(!leaves(labels, &names, &[0.001, -0.3, 50.0, 0.2]));
+        assert!(leaves(labels, &names, &[0.001, 0.3, 50.0, 0.2]));
+        // A law without dry friction has none to lose.
+        let names = ["drag", "delta_mu", "from", "xi"];
+        assert!(leaves(labels, &names, &[0.001, -0.3, 50.0, 0.2]));
+        // What two of them take adds up.
+        let labels = ["friction-patch", "friction-step(distance)"];
+        let names = ["delta_mu", "from", "length", "delta_mu2", "at", "mu"];
+        let draw = |mu: f64| [-0.15, 10.0, 40.0, -0.1, 20.0, mu];
+        assert!(leaves(labels, &names, &draw(0.3)));
+        assert!(!leaves(labels, &names, &draw(0.2)));
+    }
+}
