@@ -82,7 +82,7 @@ impl<'a> Combination<'a> {
             let b_anywhere = anywhere(b, of_a, open, seed.child(3));
             let both = [of_a, of_b, open].concat();
             let at_open = [both].into_iter();
-            let at_open = at_open.chain(in_turn(a_anywhere, b_anywhere));
+            let at_open = at_open.chain(in_turn(&a_anywhere, &b_anywhere));
             space.starts.splice(2..2, at_open);
         }
         space.extend(more);
@@ -156,10 +156,10 @@ impl<'a> Combination<'a> {
 }
 
 /// One of the first, one of the second, and so on; then what is left.
-fn in_turn(first: Vec<Vec<f64>>, second: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+fn in_turn(first: &[Vec<f64>], second: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let most = first.len().max(second.len());
     let of = |all: &[Vec<f64>], i: usize| all.get(i).cloned();
-    let each = (0..most).flat_map(|i| [of(&first, i), of(&second, i)]);
+    let each = (0..most).flat_map(|i| [of(first, i), of(second, i)]);
     each.flatten().collect()
 }
 
