@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::draws::median;
-use crate::mechanism::{ChangeKind, Family, Mechanism, Reach};
+use crate::mechanism::{Change, ChangeKind, Family, Mechanism, Reach};
 use crate::physics::Site;
 use crate::physics::forces::{Moment, Term};
 use crate::scalar::{Plain, Real};
@@ -71,12 +71,17 @@ impl<'a> Added<'a> {
     /// The dry friction that it takes away where it takes most, draw by draw.
     pub(crate) fn friction_taken(&self) -> impl Iterator<Item = f64> {
         self.values.iter().map(|own| {
-            let own: Vec<Real<Plain>> =
-                own.iter().map(|&x| Real::new(x)).collect();
-            let change = Plain::change(self.mechanism, &own);
+            let change = self.change(own);
             let terms = change.forces.terms.iter();
             terms.map(|term| (-term.rate.mu.value()).max(0.0)).sum()
         })
+    }
+
+    /// What it does to a model at values of its own.
+    fn change(&self, own: &[f64]) -> Change<Plain> {
+        let own: Vec<Real<Plain>> =
+            own.iter().map(|&x| Real::new(x)).collect();
+        Plain::change(self.mechanism, &own)
     }
 
     /// The force that it adds at some points of the way of one of several
@@ -88,9 +93,7 @@ impl<'a> Added<'a> {
     ) -> Vec<Vec<f64>> {
         let each = self.values.iter().zip(&self.mu);
         each.map(|(own, mu)| {
-            let own: Vec<Real<Plain>> =
-                own.iter().map(|&x| Real::new(x)).collect();
-            let change = Plain::change(self.mechanism, &own).of_event(event);
+            let change = self.change(own).of_event(event);
             let terms = &change.forces.terms;
             way.iter()
                 .map(|at| -terms.iter().map(|t| held(t, at, *mu)).sum::<f64>())
