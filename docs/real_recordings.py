@@ -18,7 +18,6 @@ import subprocess
 
 NOISES = ["iid", "ar(1)"]
 G = 9.81  # m/s2
-SHORT = {"friction-": ""}
 NEAR = 1.15  # of the least-squares figure, the RMSE may be so much
 
 
@@ -30,15 +29,10 @@ def diagnosed(out, folder, rate, noise):
         thin = [] if rate == "all" else ["--rate", rate, "--thin", "pick"]
         words = ["couloir", "diagnose", str(folder), "--json", *thin]
         words += ["--noise", noise]
-        text = subprocess.run(words, check=True, capture_output=True).stdout
-        path.write_bytes(text)
+        # What it says on the terminal stays there.
+        run = subprocess.run(words, check=True, stdout=subprocess.PIPE)
+        path.write_bytes(run.stdout)
     return json.loads(path.read_text())
-
-
-def short(name):
-    for long, brief in SHORT.items():
-        name = name.replace(long, brief)
-    return name
 
 
 def single(d):
@@ -76,7 +70,7 @@ def row(folder, rate, noise, d):
         noise,
         d["verdict"],
         added(d),
-        ", ".join(short(name) for name in d["group"]),
+        ", ".join(name.replace("friction-", "") for name in d["group"]),
         d["selected_noise"],
         f"{i['rmse_before']:.2f} to {i['rmse_after']:.2f}",
         least_squares(i),
