@@ -90,6 +90,10 @@ struct Subject<'a, P> {
     all: Vec<Box<dyn Mechanism>>,
 }
 
+/// By how much, in ln, a noise must promise more than one under which all fits
+/// are made to be worth its own: what is carried over to it is no surer.
+const CARRIED: f64 = 1.0;
+
 /// What was decided from the evidence.
 struct Decision {
     /// Everything that was weighed, most probable first.
@@ -188,7 +192,13 @@ impl<P: Program> Subject<'_, P> {
         progress: &dyn Progress,
     ) -> Result<usize> {
         let named = table.named().filter(|_| !options.infers_noise);
-        let row = taken(named, &self.log_of_noises(table, options));
+        let mut logs = self.log_of_noises(table, options);
+        for (log, row) in logs.iter_mut().zip(&table.rows) {
+            if row.found.is_none() {
+                *log -= CARRIED;
+            }
+        }
+        let row = taken(named, &logs);
         let seed = seed.child(2);
         let (extent, care) = (&self.extent, Care::DECIDING);
         table.fill(row, extent, &self.all, care, seed, progress)?;

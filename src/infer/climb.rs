@@ -119,7 +119,8 @@ pub(crate) struct Climb {
     pub(crate) steps: usize,
     /// The longest step along one axis.
     pub(crate) longest: f64,
-    /// A gain of the log density below which a climb has arrived.
+    /// A gain of the log density below which a climb has arrived: what is a
+    /// fiftieth higher is drawn from, and weighed, alike.
     pub(crate) arrived: f64,
     /// How often it may leap where no step climbs.
     pub(crate) leaps: usize,
@@ -127,7 +128,7 @@ pub(crate) struct Climb {
 
 impl Default for Climb {
     fn default() -> Self {
-        Self { steps: 60, longest: 2.0, arrived: 1e-3, leaps: 4 }
+        Self { steps: 60, longest: 2.0, arrived: 0.02, leaps: 4 }
     }
 }
 
@@ -146,8 +147,11 @@ const LANDING: usize = 3;
 /// Damping below which a step promises what there is to gain.
 const UNDAMPED: f64 = 0.1;
 
+/// By what damping is multiplied after a step that climbs.
+const EASED: f64 = 0.2;
+
 /// How often a step is shortened before a climb gives up.
-const TRIES: usize = 10;
+const TRIES: usize = 6;
 
 impl Climb {
     /// The place that a start leads to, with its slope and trace; `None` where
@@ -167,7 +171,9 @@ impl Climb {
                 next.height - slope.height > self.arrived
             };
             let next = match next.filter(gains) {
-                None if leaps < self.leaps => {
+                // A step that gains little, hardly damped, is near a peak;
+                // one that had to be short may be before a kink.
+                None if leaps < self.leaps && lambda > EASED * UNDAMPED => {
                     leaps += 1;
                     lambda = FREE;
                     self.leap(landscape, here)?
@@ -184,7 +190,8 @@ impl Climb {
     }
 
     /// Where a free step and a few that climb lead, if that is higher: over a
-    /// kink of the density, before which every step that climbs is short.
+    /// kink of the density, before which every step that climbs is short. Not
+    /// climbed where the slope there promises nothing higher.
     fn leap<L: Landscape>(
         &self,
         landscape: &L,
@@ -197,7 +204,13 @@ impl Climb {
             return Ok(None);
         };
         let next = line + &off;
-        let Some((found, other)) = landscape.slope(&next, &off, trace)? else {
+        let promises = |there: &Slope| {
+            let free = there.step(landscape.held(), FREE, self.longest);
+            let most = free.map_or(there.height, |off| there.after(&off));
+            most - slope.height > self.arrived
+        };
+        let landed = landscape.slope(&next, &off, trace)?;
+        let Some((found, other)) = landed.filter(|(s, _)| promises(s)) else {
             return Ok(None);
         };
         let (mut at, mut lambda) = ((next, found, other), FREE);
@@ -236,7 +249,7 @@ impl Climb {
                 landscape.slope(&next, &off, trace)?
                 && found.height > slope.height
             {
-                *lambda = (*lambda * 0.2).max(1e-9);
+                *lambda = (*lambda * EASED).max(1e-9);
                 return Ok(Some((next, found, trace)));
             }
             *lambda = (*lambda * 5.0).max(1e-6);
@@ -333,7 +346,7 @@ pub(super) fn climb_holding(
 ) -> Result<Option<Peak>> {
     let landscape = Held { posterior, held };
     let Some(slope) = landscape.slope_at(start)? else { return Ok(None) };
-    let climb = Climb { steps, leaps: 2, ..Climb::default() };
+    let climb = Climb { steps, leaps: 0, ..Climb::default() };
     let start = (DVector::from_column_slice(start), slope, ());
     let found = climb.ascend(&landscape, start, |_, _| false)?;
     Ok(found.map(Peak::of))

@@ -14,7 +14,6 @@ use rayon::prelude::*;
 
 use super::climb::{Peak, climb_holding};
 use super::proposal::Component;
-use super::schedule::Schedule;
 use crate::error::Result;
 use crate::model::Posterior;
 
@@ -24,7 +23,7 @@ const STRIDE: f64 = 1.3;
 const DOWN: f64 = 6.5;
 /// The most strides, and the most steps of a climb after each.
 const STRIDES: usize = 9;
-const FEW: usize = 4;
+const FEW: usize = 2;
 /// How far above the normal approximation, in ln, a place becomes a
 /// component.
 const ABOVE: f64 = 0.4;
@@ -40,23 +39,19 @@ pub(super) struct Met {
     pub(super) higher: Option<Peak>,
 }
 
-/// What profiles from the highest peaks meet, both ways along every
-/// coordinate, except those left out.
+/// What profiles from some peaks meet, both ways along every coordinate,
+/// except those left out; `best` is the height of the highest peak.
 ///
 /// # Errors
 /// What no other parameter values would mend.
-pub(super) fn profiles(
+pub(super) fn profiles<'p>(
     posterior: &Posterior<'_>,
-    peaks: &[Peak],
+    peaks: impl Iterator<Item = &'p Peak>,
+    best: f64,
     left_out: &[usize],
-    schedule: &Schedule,
 ) -> Result<Met> {
-    let best = peaks.first().map_or(0.0, |peak| peak.height);
-    let near = |peak: &&Peak| best - peak.height < schedule.profiled_below;
-    let high = peaks.iter().filter(near);
-    let all: Vec<Profile<'_>> =
-        high.take(schedule.profiled).flat_map(Profile::all).collect();
-    let all = all.into_iter().filter(|p| !left_out.contains(&p.along));
+    let all = peaks.flat_map(Profile::all);
+    let all = all.filter(|profile| !left_out.contains(&profile.along));
     let met = all
         .collect::<Vec<_>>()
         .into_par_iter()

@@ -12,7 +12,7 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::climb::{Held, Peak, climb_holding, climb_unless};
-use super::profile::profiles;
+use super::profile::{Met, profiles};
 use super::proposal::Component;
 use super::schedule::Schedule;
 use super::start::likely;
@@ -273,18 +273,29 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
     /// A density that bends where recorded times pass the borders of pieces
     /// stops a climb short, and strides along a coordinate pass over that.
     fn profile(&mut self) -> Result<Vec<Component>> {
-        let alone = Schedule { profiled: 1, ..*self.schedule };
         let held = self.surveyed();
-        for _ in 0..HIGHER {
-            let met = profiles(self.posterior, &self.peaks, &held, &alone)?;
-            match met.higher {
-                Some(higher) => self.climb(higher.line.as_slice())?,
-                None if !held.is_empty() => return Ok(met.components),
-                None => break,
-            }
+        let mut met = self.profiled(0, 1, &held)?;
+        for _ in 1..HIGHER {
+            let Some(higher) = met.higher.take() else { break };
+            self.climb(higher.line.as_slice())?;
+            met = self.profiled(0, 1, &held)?;
         }
-        let met = profiles(self.posterior, &self.peaks, &held, self.schedule)?;
-        Ok(met.components)
+        let mut all = met.components;
+        if held.is_empty() {
+            let others = self.profiled(1, self.schedule.profiled, &held)?;
+            all.extend(others.components);
+        }
+        Ok(all)
+    }
+
+    /// What profiles from the highest peaks meet, of those from one up to
+    /// another.
+    fn profiled(&self, from: usize, to: usize, held: &[usize]) -> Result<Met> {
+        let best = self.peaks.first().map_or(0.0, |peak| peak.height);
+        let least = best - self.schedule.profiled_below;
+        let high = self.peaks.iter().filter(|peak| peak.height > least);
+        let high = high.take(to).skip(from);
+        profiles(self.posterior, high, best, held)
     }
 
     /// The coordinates along which places were looked at.

@@ -35,7 +35,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn push<K: Forward>(&mut self, x: Real<K>) {
+    fn push<K: Forward>(&mut self, x: &Real<K>) {
         let begin = self.next * self.dimension;
         if self.numbers.len() < begin + self.dimension {
             self.numbers.resize(begin + self.dimension, 0.0);
@@ -74,10 +74,10 @@ impl<K: Forward> Listener<K> for Part<'_, K> {
         let mut total = Real::new(0.0);
         let columns = &mut *self.columns;
         noise.walk(series.grid(), residuals, &mut |value| {
-            let Informing { place, size, shape } = value.informing;
+            let Informing { place, size, shape } = &value.informing;
             columns.push(place);
             columns.push(size);
-            shape.into_iter().for_each(|shape| columns.push(shape));
+            shape.iter().for_each(|shape| columns.push(shape));
             total += value.log_density;
         })?;
         self.log_likelihood = Some(total);
@@ -90,11 +90,11 @@ impl<K: Forward> Listener<K> for Part<'_, K> {
         log_density: Real<K>,
         _: &dyn Distribution<K>,
     ) {
-        self.columns.push(log_density);
+        self.columns.push(&log_density);
     }
 
     fn increment(&mut self, log_density: Real<K>) {
-        self.columns.push(log_density);
+        self.columns.push(&log_density);
     }
 }
 
@@ -138,19 +138,57 @@ pub(super) fn information<P: Program>(
     Ok(Information { density, gradient, precision, slopes })
 }
 
-/// A A', from dot products of rows: far fewer rows than columns are too few
-/// for a blocked product.
+/// Rows that are multiplied at once: a square of sums stays in registers.
+const BLOCK: usize = 8;
+
+/// A A', block by block: far fewer rows than columns are too few for a general
+/// product.
 fn product_with_itself(matrix: &DMatrix<f64>) -> DMatrix<f64> {
-    let (rows, n) = (matrix.transpose(), matrix.nrows());
+    let n = matrix.nrows();
     let mut product = DMatrix::zeros(n, n);
-    for i in 0..n {
-        for j in 0..=i {
-            let dot = rows.column(i).dot(&rows.column(j));
-            product[(i, j)] = dot;
-            product[(j, i)] = dot;
+    if n == 0 {
+        return product;
+    }
+    let columns = matrix.as_slice();
+    for top in (0..n).step_by(BLOCK) {
+        for left in (0..=top).step_by(BLOCK) {
+            let sums = block(columns, n, [top, left]);
+            for i in 0..BLOCK.min(n - top) {
+                for j in 0..BLOCK.min(n - left) {
+                    product[(top + i, left + j)] = sums[i][j];
+                    product[(left + j, top + i)] = sums[i][j];
+                }
+            }
         }
     }
     product
+}
+
+/// One block of A A', of columns of `n` numbers each.
+fn block(
+    columns: &[f64],
+    n: usize,
+    [top, left]: [usize; 2],
+) -> [[f64; BLOCK]; BLOCK] {
+    let mut sums = [[0.0; BLOCK]; BLOCK];
+    for column in columns.chunks_exact(n) {
+        let down = part(&column[top..]);
+        let across = part(&column[left..]);
+        for (row, a) in sums.iter_mut().zip(down) {
+            row.iter_mut().zip(across).for_each(|(sum, b)| *sum += a * b);
+        }
+    }
+    sums
+}
+
+/// The first numbers of a column, 0 beyond its end.
+fn part(column: &[f64]) -> [f64; BLOCK] {
+    if let Some(whole) = column.first_chunk() {
+        return *whole;
+    }
+    let mut part = [0.0; BLOCK];
+    part.iter_mut().zip(column).for_each(|(to, from)| *to = *from);
+    part
 }
 
 fn fill<K: Number + Forward, P: Program>(

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::fit::{Fit, Prospect, fit, prospect, spread};
 use super::grids::even_grids;
-use super::screen::{COARSE, FINE, edge_grids};
+use super::screen::{COARSE, FINE, Mesh, edge_grids};
 use crate::diagnosis::locate::{FreeForce, locate_all};
 use crate::draws::log_sum_exp;
 use crate::error::Result;
@@ -311,21 +311,26 @@ fn single<P: Program>(
         starts: known.to_vec(),
         ..SearchSpace::default()
     };
+    // Another noise has shown where it is likely: a quick search does.
+    let is_known = !known.is_empty();
+    let mesh = if is_known { COARSE } else { FINE };
     for (i, own) in owns.best.iter().enumerate() {
         let seed = seed.child(0).child(i as u64);
-        space.extend(around(&posterior, mechanism, None, &[], own, seed)?);
+        let beside = (&[][..], &own[..]);
+        space.extend(around(&posterior, mechanism, None, beside, mesh, seed)?);
     }
     for (i, own) in owns.between.iter().enumerate() {
         let seed = seed.child(2).child(i as u64);
         space.starts.extend(anywhere(mechanism, &[], own, seed));
     }
-    let tails = if care.is_quick { &[][..] } else { &owns.tails };
+    let is_quick = care.is_quick || is_known;
+    let tails = if is_quick { &[][..] } else { &owns.tails };
     for own in tails {
         let coarse = edge_grids(&posterior, mechanism, &[], own, COARSE)?;
         space.grids.extend(coarse);
     }
     let thorough = LaplaceMixture::within(space);
-    let backend = if care.is_quick { thorough.quick() } else { thorough };
+    let backend = if is_quick { thorough.quick() } else { thorough };
     prospect(program, &[mechanism], backend, seed.child(1))
 }
 
@@ -336,14 +341,14 @@ pub(super) fn around(
     posterior: &Posterior<'_>,
     mechanism: &dyn Mechanism,
     known: Option<&[f64]>,
-    before: &[f64],
-    after: &[f64],
+    (before, after): (&[f64], &[f64]),
+    mesh: Mesh,
     seed: Seed,
 ) -> Result<SearchSpace> {
     let known = known.map(|place| [before, place, after].concat());
     let anywhere = anywhere(mechanism, before, after, seed.child(0));
     let starts = known.into_iter().chain(anywhere).collect();
-    let mut grids = edge_grids(posterior, mechanism, before, after, FINE)?;
+    let mut grids = edge_grids(posterior, mechanism, before, after, mesh)?;
     grids.extend(even_grids(mechanism, before, after, seed.child(1)));
     Ok(SearchSpace { prior_starts: 0, starts, grids })
 }

@@ -2,6 +2,7 @@
 
 use super::attribute::{PRIOR_STARTS, anywhere, around};
 use super::fit::{Fit, Prospect, prospect};
+use super::screen::FINE;
 use crate::error::Result;
 use crate::infer::{LaplaceMixture, Precision, SearchSpace};
 use crate::mechanism::Mechanism;
@@ -60,16 +61,16 @@ impl<'a> Combination<'a> {
                 &posterior,
                 b,
                 Some(of_b.mechanism()),
-                of_a.mechanism(),
-                of_a.own(),
+                (of_a.mechanism(), of_a.own()),
+                FINE,
                 seed.child(0),
             )?,
             around(
                 &posterior,
                 a,
                 Some(of_a.mechanism()),
-                &[],
-                &[of_b.mechanism(), of_b.own()].concat(),
+                (&[], &[of_b.mechanism(), of_b.own()].concat()),
+                FINE,
                 seed.child(1),
             )?,
         );
@@ -106,7 +107,9 @@ impl<'a> Combination<'a> {
         let posterior = Posterior::new(&with)?;
         let Known { added: before, own, open, .. } = *known;
         let seed_of = seed.child(0);
-        let mut space = around(&posterior, added, best, before, own, seed_of)?;
+        let beside = (before, own);
+        let mut space =
+            around(&posterior, added, best, beside, FINE, seed_of)?;
         let mut at_open = vec![[before, fit.mechanism(), open].concat()];
         at_open.extend(anywhere(added, before, open, seed.child(1)));
         space.starts.splice(1..1, at_open);

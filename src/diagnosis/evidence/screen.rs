@@ -48,7 +48,7 @@ pub(super) struct Mesh {
 }
 
 pub(super) const FINE: Mesh =
-    Mesh { borders: 120, levels: &[(15, 8), (5, 10), (1, 14)], halves: 2 };
+    Mesh { borders: 120, levels: &[(15, 8), (5, 10), (1, 14)], halves: 4 };
 pub(super) const COARSE: Mesh =
     Mesh { borders: 60, levels: &[(7, 5), (1, 7)], halves: 0 };
 

@@ -46,10 +46,6 @@ const ALIKE: f64 = 0.1;
 /// A climb of the own parameters.
 const CLIMB: Climb =
     Climb { steps: 10, longest: 1.0, arrived: 0.02, leaps: 0 };
-/// The most tangents to where the force is best, and a gain of the log density
-/// below which another one is not worth it.
-const TANGENTS: usize = 4;
-const ARRIVED: f64 = 0.1;
 
 /// A peak of the density of a model's own parameters at one process.
 #[derive(Debug, Clone)]
@@ -230,38 +226,27 @@ pub(super) struct Ridge<'a, 'm> {
 }
 
 impl Ridge<'_, '_> {
-    /// The tangent where the force is best at some own parameters, from one
-    /// nearby; `None` where there is no density.
+    /// A tangent where the force is about the best at some own parameters, as
+    /// one nearby has it, and the best waves by it; `None` where there is no
+    /// density.
+    ///
+    /// A second tangent, at the force that the first leads to, costs as much
+    /// and changes no weight that matters: climbs make one at each step, and
+    /// draws about the best are weighed.
     pub(super) fn best(
         &self,
         own: &DVector<f64>,
         from: &Tangent,
     ) -> Result<Option<(Tangent, Waves)>> {
-        let Some(mut waves) = from.waves(self.factor, own) else {
+        let Some(waves) = from.waves(self.factor, own) else {
             return Ok(None);
         };
-        let mut found: Option<(Tangent, DVector<f64>)> = None;
-        for _ in 0..TANGENTS {
-            let force = self.factor * &waves.mean;
-            let tangent = self.cells.tangent(force, own.clone())?;
-            let Some(tangent) = tangent else { break };
-            let Some(next) = tangent.waves(self.factor, own) else { break };
-            let here = tangent.joint(&waves.mean);
-            let lower =
-                |(last, at): &(Tangent, DVector<f64>)| here < last.joint(at);
-            if found.as_ref().is_some_and(lower) {
-                break;
-            }
-            let off = &next.mean - &waves.mean;
-            let gain = 0.5 * next.precision.l().tr_mul(&off).norm_squared();
-            found = Some((tangent, waves.mean));
-            waves = next;
-            if gain < ARRIVED {
-                break;
-            }
-        }
-        let Some((tangent, _)) = found else { return Ok(None) };
-        Ok(tangent.waves(self.factor, own).map(|waves| (tangent, waves)))
+        let force = self.factor * &waves.mean;
+        let tangent = self.cells.tangent(force, own.clone())?;
+        Ok(tangent.and_then(|tangent| {
+            let waves = tangent.waves(self.factor, own)?;
+            Some((tangent, waves))
+        }))
     }
 }
 

@@ -15,7 +15,7 @@ use crate::seed::{Rng, Seed};
 
 /// How many forces are drawn at a place: half of them mirror the others at
 /// the best one, so that what is odd about it cancels.
-const FORCES: usize = 24;
+const FORCES: usize = 12;
 /// How many of these are kept.
 const KEPT: usize = 8;
 /// Degrees of freedom of what they are drawn from: somewhat heavier tails than

@@ -94,12 +94,6 @@ impl Tangent {
         }
     }
 
-    /// ln p(own, data, waves), up to a constant, for waves that make the
-    /// tangent's force.
-    pub(super) fn joint(&self, waves: &DVector<f64>) -> f64 {
-        self.height - 0.5 * waves.norm_squared()
-    }
-
     /// The waves of a process that are best at some own parameters, as far as
     /// the tangent holds; `None` where they have no width.
     pub(super) fn waves(
