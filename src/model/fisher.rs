@@ -8,7 +8,7 @@
 //! say themselves what a value tells. The prior adds its own curvature,
 //! parameter by parameter.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use super::density::Density;
 use super::information::Information;
@@ -17,6 +17,7 @@ use super::number::Number;
 use super::pass::run;
 use super::program::Program;
 use super::run::Source;
+use super::slopes::Slopes;
 use crate::error::{Error, Outcome, Result};
 use crate::noise::{Informing, Noise};
 use crate::observe::Series;
@@ -24,25 +25,19 @@ use crate::prior::Distribution;
 use crate::scalar::{Forward, Grad, Kind, Real};
 
 /// Derivatives of the innovations, one column a datum, and how the priors bend.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Columns {
-    dimension: usize,
+    slopes: Slopes,
+    /// The first of the coordinates that are looked at, and the next column.
     first: usize,
     next: usize,
-    numbers: Vec<f64>,
     /// Minus the second derivative of each prior's log density along the line.
     bends: Vec<f64>,
 }
 
 impl Columns {
     fn push<K: Forward>(&mut self, x: &Real<K>) {
-        let begin = self.next * self.dimension;
-        if self.numbers.len() < begin + self.dimension {
-            self.numbers.resize(begin + self.dimension, 0.0);
-        }
-        let column = &mut self.numbers[begin..begin + self.dimension];
-        let slots = column.iter_mut().skip(self.first).take(K::DIRECTIONS);
-        slots.enumerate().for_each(|(i, slot)| *slot = x.partial(i));
+        self.slopes.write(self.next, self.first, x);
         self.next += 1;
     }
 }
@@ -121,74 +116,20 @@ pub(super) fn information<P: Program>(
     z: &[f64],
 ) -> Result<Information> {
     let mut gradient = DVector::zeros(z.len());
-    let mut columns = Columns { dimension: z.len(), ..Columns::default() };
-    columns.numbers.reserve(z.len() * RESERVED);
+    let slopes = Slopes::new(z.len(), RESERVED);
+    let mut columns = Columns { slopes, first: 0, next: 0, bends: Vec::new() };
     let density = match z.len() {
         0..=2 => fill::<Grad<2>, P>(program, z, &mut gradient, &mut columns),
         3..=4 => fill::<Grad<4>, P>(program, z, &mut gradient, &mut columns),
         5..=16 => fill::<Grad<8>, P>(program, z, &mut gradient, &mut columns),
         _ => fill::<Grad<16>, P>(program, z, &mut gradient, &mut columns),
     }?;
-    let bends = columns.bends;
-    let slopes = DMatrix::from_vec(z.len(), columns.next, columns.numbers);
-    let mut precision = product_with_itself(&slopes);
+    let Columns { slopes, bends, .. } = columns;
+    let mut precision = slopes.squared();
     for (i, bend) in bends.iter().take(z.len()).enumerate() {
         precision[(i, i)] += bend;
     }
     Ok(Information { density, gradient, precision, slopes })
-}
-
-/// Rows that are multiplied at once: a square of sums stays in registers.
-const BLOCK: usize = 8;
-
-/// A A', block by block: far fewer rows than columns are too few for a general
-/// product.
-fn product_with_itself(matrix: &DMatrix<f64>) -> DMatrix<f64> {
-    let n = matrix.nrows();
-    let mut product = DMatrix::zeros(n, n);
-    if n == 0 {
-        return product;
-    }
-    let columns = matrix.as_slice();
-    for top in (0..n).step_by(BLOCK) {
-        for left in (0..=top).step_by(BLOCK) {
-            let sums = block(columns, n, [top, left]);
-            for i in 0..BLOCK.min(n - top) {
-                for j in 0..BLOCK.min(n - left) {
-                    product[(top + i, left + j)] = sums[i][j];
-                    product[(left + j, top + i)] = sums[i][j];
-                }
-            }
-        }
-    }
-    product
-}
-
-/// One block of A A', of columns of `n` numbers each.
-fn block(
-    columns: &[f64],
-    n: usize,
-    [top, left]: [usize; 2],
-) -> [[f64; BLOCK]; BLOCK] {
-    let mut sums = [[0.0; BLOCK]; BLOCK];
-    for column in columns.chunks_exact(n) {
-        let down = part(&column[top..]);
-        let across = part(&column[left..]);
-        for (row, a) in sums.iter_mut().zip(down) {
-            row.iter_mut().zip(across).for_each(|(sum, b)| *sum += a * b);
-        }
-    }
-    sums
-}
-
-/// The first numbers of a column, 0 beyond its end.
-fn part(column: &[f64]) -> [f64; BLOCK] {
-    if let Some(whole) = column.first_chunk() {
-        return *whole;
-    }
-    let mut part = [0.0; BLOCK];
-    part.iter_mut().zip(column).for_each(|(to, from)| *to = *from);
-    part
 }
 
 fn fill<K: Number + Forward, P: Program>(
@@ -211,7 +152,7 @@ fn fill<K: Number + Forward, P: Program>(
         let zero = density.rejected.is_some();
         last = Some(density);
         if zero {
-            columns.numbers.resize(columns.next * z.len(), 0.0);
+            columns.slopes.resize(columns.next);
             break;
         }
     }

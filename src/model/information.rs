@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::density::Density;
+use super::slopes::Slopes;
 
 /// The log density on the real line about a point, to second order.
 #[derive(Debug, Clone)]
@@ -13,10 +14,10 @@ pub struct Information {
     pub gradient: DVector<f64>,
     /// About minus its Hessian; positive semidefinite.
     pub precision: DMatrix<f64>,
-    /// The derivatives of the innovations and of their scales, a row for each
-    /// coordinate: `precision` is their product with themselves, and the bends
-    /// of the priors. Empty where the density is put together from others.
-    pub(crate) slopes: DMatrix<f64>,
+    /// The derivatives of the innovations and of their scales: `precision` is
+    /// their product with themselves, and the bends of the priors. Empty where
+    /// the density is put together from others.
+    pub(crate) slopes: Slopes,
 }
 
 impl Information {
@@ -26,7 +27,7 @@ impl Information {
             density: Density::ONE,
             gradient: DVector::zeros(dimension),
             precision: DMatrix::zeros(dimension, dimension),
-            slopes: DMatrix::zeros(dimension, 0),
+            slopes: Slopes::new(dimension, 0),
         }
     }
 

@@ -29,6 +29,7 @@ mod posterior;
 mod program;
 mod run;
 mod slice;
+mod slopes;
 mod together;
 mod with;
 

@@ -152,7 +152,7 @@ impl Model for Slice<'_> {
         let rows = precision.select_rows(&self.unknown);
         let precision = rows.select_columns(&self.unknown);
         let density = self.given(density, true);
-        let slopes = slopes.select_rows(&self.unknown);
+        let slopes = slopes.of_some(&self.unknown);
         Ok(Information { density, gradient, precision, slopes })
     }
 }

@@ -2,7 +2,7 @@
 
 use super::attribute::{PRIOR_STARTS, anywhere, around};
 use super::fit::{Fit, Prospect, prospect};
-use super::screen::FINE;
+use super::screen::COARSE;
 use crate::error::Result;
 use crate::infer::{LaplaceMixture, Precision, SearchSpace};
 use crate::mechanism::Mechanism;
@@ -62,7 +62,7 @@ impl<'a> Combination<'a> {
                 b,
                 Some(of_b.mechanism()),
                 (of_a.mechanism(), of_a.own()),
-                FINE,
+                COARSE,
                 seed.child(0),
             )?,
             around(
@@ -70,7 +70,7 @@ impl<'a> Combination<'a> {
                 a,
                 Some(of_a.mechanism()),
                 (&[], &[of_b.mechanism(), of_b.own()].concat()),
-                FINE,
+                COARSE,
                 seed.child(1),
             )?,
         );
@@ -109,7 +109,7 @@ impl<'a> Combination<'a> {
         let seed_of = seed.child(0);
         let beside = (before, own);
         let mut space =
-            around(&posterior, added, best, beside, FINE, seed_of)?;
+            around(&posterior, added, best, beside, COARSE, seed_of)?;
         let mut at_open = vec![[before, fit.mechanism(), open].concat()];
         at_open.extend(anywhere(added, before, open, seed.child(1)));
         space.starts.splice(1..1, at_open);

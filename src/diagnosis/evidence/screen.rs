@@ -206,15 +206,15 @@ impl Screen<'_, '_> {
         let lower = inner.cholesky()?.l();
         let rest =
             lower.solve_lower_triangular(&last.gradient.select_rows(&own))?;
-        let data = last.slopes.ncols();
+        let data = last.slopes.count();
         let mut effects = Effects::none(informed.len(), own.len(), data);
         for (i, about) in informed.iter().enumerate() {
             let Some(about) = about.as_ref() else { continue };
-            if about.slopes.ncols() != data {
+            if about.slopes.count() != data {
                 continue;
             }
-            let column = about.slopes.row(index).transpose() / stretch;
-            let across = about.slopes.select_rows(&own) * &column;
+            let column = about.slopes.row(index) / stretch;
+            let across = about.slopes.times(&own, &column);
             let across = lower.solve_lower_triangular(&across)?;
             effects.score[i] =
                 (about.gradient[index] - pull) / stretch - across.dot(&rest);

@@ -1,0 +1,161 @@
+//! Derivatives of all data along all coordinates.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::scalar::{Forward, Real};
+
+/// How many coordinates are held together: a square of so many sums stays in
+/// registers.
+const BLOCK: usize = 8;
+
+/// The derivatives of the innovations and of their scales, a row for each
+/// coordinate and a column for each number; columns are padded with zeros to
+/// whole blocks.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Slopes {
+    blocks: Vec<[f64; BLOCK]>,
+    /// How many blocks a column has.
+    width: usize,
+    /// Which row of the blocks each coordinate has.
+    rows: Vec<usize>,
+}
+
+impl Slopes {
+    /// Without columns, with room for some.
+    pub(super) fn new(dimension: usize, room: usize) -> Self {
+        let width = dimension.div_ceil(BLOCK);
+        let blocks = Vec::with_capacity(width * room);
+        Self { blocks, width, rows: (0..dimension).collect() }
+    }
+
+    /// Writes the derivatives that a number carries into a column, from the
+    /// row `first` on, which begins a block; makes the column if it is a new
+    /// one.
+    #[inline]
+    pub(super) fn write<K: Forward>(
+        &mut self,
+        column: usize,
+        first: usize,
+        x: &Real<K>,
+    ) {
+        let begin = column * self.width;
+        if self.blocks.len() < begin + self.width {
+            self.blocks.resize(begin + self.width, [0.0; BLOCK]);
+        }
+        let column = &mut self.blocks[begin..begin + self.width];
+        let blocks = column[first / BLOCK..].iter_mut().enumerate();
+        for (k, block) in blocks.take(K::DIRECTIONS.div_ceil(BLOCK)) {
+            *block = std::array::from_fn(|i| x.partial(BLOCK * k + i));
+        }
+    }
+
+    /// Keeps so many columns; those that are missing are zero.
+    pub(super) fn resize(&mut self, columns: usize) {
+        self.blocks.resize(columns * self.width, [0.0; BLOCK]);
+    }
+
+    /// How many columns there are.
+    pub(crate) fn count(&self) -> usize {
+        self.blocks.len().checked_div(self.width).unwrap_or(0)
+    }
+
+    /// The derivatives along one coordinate.
+    pub(crate) fn row(&self, coordinate: usize) -> DVector<f64> {
+        let row = self.rows[coordinate];
+        let (block, place) = (row / BLOCK, row % BLOCK);
+        let columns = self.blocks.chunks_exact(self.width.max(1));
+        let row = columns.map(|column| column[block][place]);
+        DVector::from_iterator(self.count(), row)
+    }
+
+    /// The products of some rows with what has a number for each column.
+    pub(crate) fn times(
+        &self,
+        coordinates: &[usize],
+        numbers: &DVector<f64>,
+    ) -> DVector<f64> {
+        let of = |&i: &usize| self.row(i).dot(numbers);
+        DVector::from_iterator(coordinates.len(), coordinates.iter().map(of))
+    }
+
+    /// With some of the coordinates.
+    pub(super) fn of_some(mut self, coordinates: &[usize]) -> Self {
+        self.rows = coordinates.iter().map(|&i| self.rows[i]).collect();
+        self
+    }
+
+    /// The products of all rows with each other, block by block: far fewer
+    /// rows than columns are too few for a general product.
+    pub(super) fn squared(&self) -> DMatrix<f64> {
+        let n = self.rows.len();
+        let mut product = DMatrix::zeros(n, n);
+        for top in 0..self.width {
+            for left in 0..=top {
+                let sums = self.block(top, left);
+                let (down, across) = (BLOCK * top, BLOCK * left);
+                for i in 0..BLOCK.min(n - down) {
+                    for j in 0..BLOCK.min(n - across) {
+                        product[(down + i, across + j)] = sums[i][j];
+                        product[(across + j, down + i)] = sums[i][j];
+                    }
+                }
+            }
+        }
+        product
+    }
+
+    fn block(&self, top: usize, left: usize) -> [[f64; BLOCK]; BLOCK] {
+        let mut sums = [[0.0; BLOCK]; BLOCK];
+        for column in self.blocks.chunks_exact(self.width) {
+            let (down, across) = (&column[top], &column[left]);
+            for i in 0..BLOCK {
+                for j in 0..BLOCK {
+                    sums[i][j] += down[i] * across[j];
+                }
+            }
+        }
+        sums
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::Grad;
+
+    /// The derivative of a datum along a coordinate.
+    fn slope(datum: usize, coordinate: usize) -> f64 {
+        (0.37 * (datum * 50 + coordinate) as f64).sin()
+    }
+
+    #[test]
+    fn products_are_those_of_dense_matrices() {
+        // Within a block, of two and a half, and of three passes of 16.
+        for dimension in [1, 7, 20, 45] {
+            let mut slopes = Slopes::new(dimension, 4);
+            for first in (0..dimension).step_by(16) {
+                for datum in 0..30 {
+                    let partials: Vec<f64> = (first..dimension)
+                        .take(16)
+                        .map(|i| slope(datum, i))
+                        .collect();
+                    let x = Real::<Grad<16>>::assembled(0.0, &partials);
+                    slopes.write(datum, first, &x);
+                }
+            }
+            assert_eq!(slopes.count(), 30);
+            let dense = DMatrix::from_fn(dimension, 30, |i, j| slope(j, i));
+            let product = &dense * dense.transpose();
+            // Sums of 30 products below 1.
+            assert!((slopes.squared() - product).amax() < 30.0 * 1e-15);
+            let last = dimension - 1;
+            assert_eq!(slopes.row(last), dense.row(last).transpose());
+            let numbers = DVector::from_fn(30, |j, _| slope(j, 3));
+            let times = slopes.times(&[last, 0], &numbers);
+            let expected = dense.select_rows(&[last, 0]) * &numbers;
+            assert!((times - expected).amax() < 30.0 * 1e-15);
+            let one = slopes.of_some(&[last]);
+            assert_eq!(one.row(0), dense.row(last).transpose());
+        }
+    }
+}
