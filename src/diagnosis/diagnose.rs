@@ -90,9 +90,9 @@ struct Subject<'a, P> {
     all: Vec<Box<dyn Mechanism>>,
 }
 
-/// By how much, in ln, a noise must promise more than one under which all fits
-/// are made to be worth its own: what is carried over to it is no surer.
-const CARRIED: f64 = 1.0;
+/// How sure, in ln, an evidence is that was carried over to another noise: one
+/// gets fits of its own only where it promises more by so much.
+const UNSURE: f64 = 1.0;
 
 /// What was decided from the evidence.
 struct Decision {
@@ -112,7 +112,6 @@ struct Decision {
 }
 
 impl Decision {
-    /// What would do nearly as well as what was decided.
     /// Whether the errors are all that is corrected.
     fn takes_noise(&self) -> bool {
         self.verdict == Verdict::Errors && self.withheld.is_none()
@@ -133,6 +132,7 @@ impl Decision {
         if other { row.noisy.name.clone() } else { options.noise.clone() }
     }
 
+    /// What would do nearly as well as what was decided.
     fn rivals(&self, all: &[Box<dyn Mechanism>], none: &Fit) -> Vec<Rival> {
         let of = |c: &Chosen| c.rivals(all, none);
         let mut rivals = self.chosen.as_ref().map(of).unwrap_or_default();
@@ -193,9 +193,9 @@ impl<P: Program> Subject<'_, P> {
     ) -> Result<usize> {
         let named = table.named().filter(|_| !options.infers_noise);
         let mut logs = self.log_of_noises(table, options);
-        for (log, row) in logs.iter_mut().zip(&table.rows) {
-            if row.found.is_none() {
-                *log -= CARRIED;
+        for (i, log) in logs.iter_mut().enumerate() {
+            if table.rows[i].found.is_none() && named != Some(i) {
+                *log -= UNSURE;
             }
         }
         let row = taken(named, &logs);

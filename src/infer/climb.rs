@@ -119,10 +119,10 @@ pub(crate) struct Climb {
     pub(crate) steps: usize,
     /// The longest step along one axis.
     pub(crate) longest: f64,
-    /// A gain of the log density below which a climb has arrived: what is a
-    /// fiftieth higher is drawn from, and weighed, alike.
+    /// A gain of the log density by one step, below which a climb ends: what is
+    /// a fiftieth higher is drawn from, and weighed, alike.
     pub(crate) arrived: f64,
-    /// How often it may leap where no step climbs.
+    /// How often it may leap where a step had to be short.
     pub(crate) leaps: usize,
 }
 
@@ -150,6 +150,11 @@ const UNDAMPED: f64 = 0.1;
 /// By what damping is multiplied after a step that climbs.
 const EASED: f64 = 0.2;
 
+/// Damping after a step that does not climb: more than a free one's.
+fn braked(lambda: f64) -> f64 {
+    (5.0 * lambda).max(5.0 * FREE)
+}
+
 /// How often a step is shortened before a climb gives up.
 const TRIES: usize = 6;
 
@@ -167,23 +172,24 @@ impl Climb {
         for _ in 0..self.steps {
             let here = (&line, &slope, &trace);
             let next = self.step(landscape, here, &mut lambda)?;
-            let gains = |(_, next, _): &Place<L>| {
-                next.height - slope.height > self.arrived
-            };
-            let next = match next.filter(gains) {
-                // A step that gains little, hardly damped, is near a peak;
-                // one that had to be short may be before a kink.
-                None if leaps < self.leaps && lambda > EASED * UNDAMPED => {
-                    leaps += 1;
-                    lambda = FREE;
-                    self.leap(landscape, here)?
-                }
-                next => next,
-            };
-            let Some(next) = next else { break };
+            let gain = next.as_ref().map(|next| next.1.height - slope.height);
+            let ends = gain.is_none_or(|gain| gain <= self.arrived);
+            // A step that gains little, hardly damped, is near a peak; one
+            // that had to be short may be before a kink.
+            let was_short = lambda > EASED * UNDAMPED;
+            let mut leapt = None;
+            if ends && was_short && leaps < self.leaps {
+                (leaps, lambda) = (leaps + 1, FREE);
+                leapt = self.leap(landscape, here)?;
+            }
+            let ends = ends && leapt.is_none();
+            let Some(next) = leapt.or(next) else { break };
             (line, slope, trace) = next;
             if ends_at(&line, slope.height) {
                 return Ok(None);
+            }
+            if ends {
+                break;
             }
         }
         Ok(Some((line, slope, trace)))
@@ -237,11 +243,11 @@ impl Climb {
             let Some(off) =
                 slope.step(landscape.held(), *lambda, self.longest)
             else {
-                *lambda = (*lambda * 5.0).max(1e-6);
+                *lambda = braked(*lambda);
                 continue;
             };
             let promised = slope.after(&off) - slope.height;
-            if *lambda < UNDAMPED && promised < self.arrived {
+            if promised < self.arrived {
                 return Ok(None);
             }
             let next = line + &off;
@@ -252,7 +258,7 @@ impl Climb {
                 *lambda = (*lambda * EASED).max(1e-9);
                 return Ok(Some((next, found, trace)));
             }
-            *lambda = (*lambda * 5.0).max(1e-6);
+            *lambda = braked(*lambda);
         }
         Ok(None)
     }

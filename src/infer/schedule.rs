@@ -10,7 +10,7 @@ pub(crate) struct Schedule {
     /// after one step each has said what they promise.
     pub(crate) promising: usize,
     /// From how many of these a climb of all coordinates starts, at the most;
-    /// it is a quarter of all places, or sixteen. Most end soon at a peak that
+    /// it is a quarter of all places, or eight. Most end soon at a peak that
     /// is known.
     pub(crate) climbed: usize,
     /// How many places beside those that hold most are looked at, at the most.
@@ -59,7 +59,8 @@ pub(crate) struct Schedule {
 }
 
 impl Schedule {
-    /// A quick search, which says whether a thorough one is worth it.
+    /// A quick search: it says whether a thorough one is worth it, or begins
+    /// where one has led.
     pub(crate) fn quick() -> Self {
         Self {
             promising: 16,

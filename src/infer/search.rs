@@ -9,6 +9,8 @@
 //! every coordinate tell where the highest peaks are not as their curvature
 //! says.
 
+use std::ops::Range;
+
 use nalgebra::DVector;
 use rayon::prelude::*;
 
@@ -239,27 +241,26 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
     /// stops a climb short, and strides along a coordinate pass over that.
     fn profile(&mut self) -> Result<Vec<Component>> {
         let held = self.surveyed();
-        let mut met = self.profiled(0, 1, &held)?;
-        for _ in 1..HIGHER {
+        let mut met = self.profiled(0..1, &held)?;
+        for _ in 0..HIGHER {
             let Some(higher) = met.higher.take() else { break };
             self.climb(higher.line.as_slice())?;
-            met = self.profiled(0, 1, &held)?;
+            met = self.profiled(0..1, &held)?;
         }
         let mut all = met.components;
         if held.is_empty() {
-            let others = self.profiled(1, self.schedule.profiled, &held)?;
-            all.extend(others.components);
+            let others = 1..self.schedule.profiled;
+            all.extend(self.profiled(others, &held)?.components);
         }
         Ok(all)
     }
 
-    /// What profiles from the highest peaks meet, of those from one up to
-    /// another.
-    fn profiled(&self, from: usize, to: usize, held: &[usize]) -> Result<Met> {
+    /// What profiles from some of the highest peaks meet.
+    fn profiled(&self, which: Range<usize>, held: &[usize]) -> Result<Met> {
         let best = self.peaks.first().map_or(0.0, |peak| peak.height);
         let least = best - self.schedule.profiled_below;
         let high = self.peaks.iter().filter(|peak| peak.height > least);
-        let high = high.take(to).skip(from);
+        let high = high.take(which.end).skip(which.start);
         profiles(self.posterior, high, best, held)
     }
 

@@ -12,22 +12,22 @@ use nalgebra::DVector;
 
 use super::density::Density;
 use super::information::Information;
+use super::jacobian::Jacobian;
 use super::listener::{Declaration, Listener};
 use super::number::Number;
 use super::pass::run;
 use super::program::Program;
 use super::run::Source;
-use super::slopes::Slopes;
 use crate::error::{Error, Outcome, Result};
 use crate::noise::{Informing, Noise};
 use crate::observe::Series;
 use crate::prior::Distribution;
 use crate::scalar::{Forward, Grad, Kind, Real};
 
-/// Derivatives of the innovations, one column a datum, and how the priors bend.
+/// Derivatives of the innovations and of their scales, and how the priors bend.
 #[derive(Debug)]
 struct Columns {
-    slopes: Slopes,
+    jacobian: Jacobian,
     /// The first of the coordinates that are looked at, and the next column.
     first: usize,
     next: usize,
@@ -37,7 +37,7 @@ struct Columns {
 
 impl Columns {
     fn push<K: Forward>(&mut self, x: &Real<K>) {
-        self.slopes.write(self.next, self.first, x);
+        self.jacobian.write(self.next, self.first, x);
         self.next += 1;
     }
 }
@@ -116,20 +116,21 @@ pub(super) fn information<P: Program>(
     z: &[f64],
 ) -> Result<Information> {
     let mut gradient = DVector::zeros(z.len());
-    let slopes = Slopes::new(z.len(), RESERVED);
-    let mut columns = Columns { slopes, first: 0, next: 0, bends: Vec::new() };
+    let jacobian = Jacobian::new(z.len(), RESERVED);
+    let mut columns =
+        Columns { jacobian, first: 0, next: 0, bends: Vec::new() };
     let density = match z.len() {
         0..=2 => fill::<Grad<2>, P>(program, z, &mut gradient, &mut columns),
         3..=4 => fill::<Grad<4>, P>(program, z, &mut gradient, &mut columns),
         5..=16 => fill::<Grad<8>, P>(program, z, &mut gradient, &mut columns),
         _ => fill::<Grad<16>, P>(program, z, &mut gradient, &mut columns),
     }?;
-    let Columns { slopes, bends, .. } = columns;
-    let mut precision = slopes.squared();
+    let Columns { jacobian, bends, .. } = columns;
+    let mut precision = jacobian.squared();
     for (i, bend) in bends.iter().take(z.len()).enumerate() {
         precision[(i, i)] += bend;
     }
-    Ok(Information { density, gradient, precision, slopes })
+    Ok(Information { density, gradient, precision, jacobian })
 }
 
 fn fill<K: Number + Forward, P: Program>(
@@ -151,8 +152,8 @@ fn fill<K: Number + Forward, P: Program>(
         }
         let zero = density.rejected.is_some();
         last = Some(density);
+        columns.jacobian.resize(columns.next);
         if zero {
-            columns.slopes.resize(columns.next);
             break;
         }
     }

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::density::Density;
-use super::slopes::Slopes;
+use super::jacobian::Jacobian;
 
 /// The log density on the real line about a point, to second order.
 #[derive(Debug, Clone)]
@@ -17,7 +17,7 @@ pub struct Information {
     /// The derivatives of the innovations and of their scales: `precision` is
     /// their product with themselves, and the bends of the priors. Empty where
     /// the density is put together from others.
-    pub(crate) slopes: Slopes,
+    pub(crate) jacobian: Jacobian,
 }
 
 impl Information {
@@ -27,7 +27,7 @@ impl Information {
             density: Density::ONE,
             gradient: DVector::zeros(dimension),
             precision: DMatrix::zeros(dimension, dimension),
-            slopes: Slopes::new(dimension, 0),
+            jacobian: Jacobian::new(dimension, 0),
         }
     }
 

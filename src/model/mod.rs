@@ -18,6 +18,7 @@ mod fisher;
 mod given;
 mod gradient;
 mod information;
+mod jacobian;
 mod keep;
 mod label;
 mod labels;
@@ -29,7 +30,6 @@ mod posterior;
 mod program;
 mod run;
 mod slice;
-mod slopes;
 mod together;
 mod with;
 

@@ -145,15 +145,15 @@ impl Model for Slice<'_> {
 
     fn information(&self, z: &[f64]) -> Result<Information> {
         let line = self.filled(&self.line, z);
-        let Information { density, gradient, precision, slopes } =
+        let Information { density, gradient, precision, jacobian } =
             self.model.information(&line)?;
         let own = self.unknown.iter().map(|&i| gradient[i]);
         let gradient = DVector::from_iterator(z.len(), own);
         let rows = precision.select_rows(&self.unknown);
         let precision = rows.select_columns(&self.unknown);
         let density = self.given(density, true);
-        let slopes = slopes.of_some(&self.unknown);
-        Ok(Information { density, gradient, precision, slopes })
+        let jacobian = jacobian.of_some(&self.unknown);
+        Ok(Information { density, gradient, precision, jacobian })
     }
 }
 

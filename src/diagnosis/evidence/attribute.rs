@@ -138,8 +138,8 @@ pub(crate) fn attribute_beside<P: Program>(
 /// What is known of a catalogue before it is weighed.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Known<'k> {
-    /// Likely places with each mechanism, on the real line; none where there
-    /// is no list.
+    /// Likely places with each mechanism, on the real line, from where a quick
+    /// search does; none where there is no list.
     pub(crate) places: &'k [Vec<Vec<f64>>],
     pub(crate) care: Care,
 }
@@ -335,8 +335,8 @@ fn single<P: Program>(
 }
 
 /// Where a mechanism is looked for, all other coordinates beginning at those
-/// before and after it: anywhere in its prior, along its grids, and at the
-/// best place that is known of it.
+/// before and after it: anywhere in its prior, along its grids, with edges as
+/// closely as a mesh is, and at the best place that is known of it.
 pub(super) fn around(
     posterior: &Posterior<'_>,
     mechanism: &dyn Mechanism,

@@ -47,8 +47,11 @@ pub(super) struct Mesh {
     halves: usize,
 }
 
+/// Where a mechanism is looked for without anything known of it.
 pub(super) const FINE: Mesh =
     Mesh { borders: 120, levels: &[(15, 8), (5, 10), (1, 14)], halves: 4 };
+/// From the tails of the model's own parameters, beside other terms, and under
+/// a second noise: beside a finer look, or from where a term is known.
 pub(super) const COARSE: Mesh =
     Mesh { borders: 60, levels: &[(7, 5), (1, 7)], halves: 0 };
 
@@ -206,15 +209,15 @@ impl Screen<'_, '_> {
         let lower = inner.cholesky()?.l();
         let rest =
             lower.solve_lower_triangular(&last.gradient.select_rows(&own))?;
-        let data = last.slopes.count();
+        let data = last.jacobian.count();
         let mut effects = Effects::none(informed.len(), own.len(), data);
         for (i, about) in informed.iter().enumerate() {
             let Some(about) = about.as_ref() else { continue };
-            if about.slopes.count() != data {
+            if about.jacobian.count() != data {
                 continue;
             }
-            let column = about.slopes.row(index) / stretch;
-            let across = about.slopes.times(&own, &column);
+            let column = about.jacobian.row(index) / stretch;
+            let across = about.jacobian.times(&own, &column);
             let across = lower.solve_lower_triangular(&across)?;
             effects.score[i] =
                 (about.gradient[index] - pull) / stretch - across.dot(&rest);

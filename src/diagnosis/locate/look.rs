@@ -180,7 +180,11 @@ impl<'a, 'm> Sought<'a, 'm> {
         let ridge = Ridge { cells: self.cells, factor: &factor };
         let own = from.own.clone();
         let still = DVector::zeros(own.len());
-        let Some((slope, tangent)) = ridge.slope(&own, &still, from)? else {
+        // The first force may be far off: a second tangent says how high it is.
+        let Some((_, near)) = ridge.slope(&own, &still, from)? else {
+            return Ok(None);
+        };
+        let Some((slope, tangent)) = ridge.slope(&own, &still, &near)? else {
             return Ok(None);
         };
         let found =
@@ -226,8 +230,8 @@ pub(super) struct Ridge<'a, 'm> {
 }
 
 impl Ridge<'_, '_> {
-    /// A tangent where the force is about the best at some own parameters, as
-    /// one nearby has it, and the best waves by it; `None` where there is no
+    /// A tangent at the force that one nearby says is best at some own
+    /// parameters, and the best waves by the new one; `None` where there is no
     /// density.
     ///
     /// A second tangent, at the force that the first leads to, costs as much

@@ -3,12 +3,11 @@
 //!
 //! Where a posterior is a few peaks of nearly normal shape, as that of a
 //! mechanism whose place is unknown, climbing from many starts finds them for
-//! a hundredth of what a population led from the prior costs. Five steps, each
-//! in a file of its own: *search* for modes and held places
-//! (`search.rs`), *adapt* the mixture of their normal approximations
-//! (`adapt.rs`), *check* it where draws that are moved on arrive (`check.rs`),
-//! freeze it, and *estimate* from fresh draws (`estimate.rs`). What does not
-//! learn is *tempered* (`temper.rs`).
+//! a hundredth of what a population led from the prior costs. Five steps:
+//! *search* for modes (`search.rs`) and held places (`places.rs`), *adapt* the
+//! mixture of their normal approximations (`adapt.rs`), *check* it where draws
+//! that are moved on arrive (`check.rs`), freeze it, and *estimate* from fresh
+//! draws (`estimate.rs`). What does not learn is *tempered* (`temper.rs`).
 
 use crate::error::{Error, Result};
 use crate::infer::adapt::Frozen;
@@ -80,8 +79,7 @@ impl LaplaceMixture {
         Self { schedule, ..Self::default() }
     }
 
-    /// The same with a quick search, which says whether a thorough one is worth
-    /// it.
+    /// The same with a quick search.
     pub(crate) fn quick(&self) -> Self {
         Self { space: self.space.clone(), schedule: Schedule::quick() }
     }

@@ -11,8 +11,8 @@ const BLOCK: usize = 8;
 /// The derivatives of the innovations and of their scales, a row for each
 /// coordinate and a column for each number; columns are padded with zeros to
 /// whole blocks.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct Slopes {
+#[derive(Debug, Clone)]
+pub(crate) struct Jacobian {
     blocks: Vec<[f64; BLOCK]>,
     /// How many blocks a column has.
     width: usize,
@@ -20,7 +20,7 @@ pub(crate) struct Slopes {
     rows: Vec<usize>,
 }
 
-impl Slopes {
+impl Jacobian {
     /// Without columns, with room for some.
     pub(super) fn new(dimension: usize, room: usize) -> Self {
         let width = dimension.div_ceil(BLOCK);
@@ -38,6 +38,7 @@ impl Slopes {
         first: usize,
         x: &Real<K>,
     ) {
+        debug_assert_eq!(first % BLOCK, 0, "a pass begins a block");
         let begin = column * self.width;
         if self.blocks.len() < begin + self.width {
             self.blocks.resize(begin + self.width, [0.0; BLOCK]);
@@ -64,8 +65,8 @@ impl Slopes {
         let row = self.rows[coordinate];
         let (block, place) = (row / BLOCK, row % BLOCK);
         let columns = self.blocks.chunks_exact(self.width.max(1));
-        let row = columns.map(|column| column[block][place]);
-        DVector::from_iterator(self.count(), row)
+        let numbers = columns.map(|column| column[block][place]);
+        DVector::from_iterator(self.count(), numbers)
     }
 
     /// The products of some rows with what has a number for each column.
@@ -85,9 +86,11 @@ impl Slopes {
     }
 
     /// The products of all rows with each other, block by block: far fewer
-    /// rows than columns are too few for a general product.
+    /// rows than columns are too few for a general product. Not of some of the
+    /// coordinates alone.
     pub(super) fn squared(&self) -> DMatrix<f64> {
         let n = self.rows.len();
+        debug_assert!(self.rows.iter().copied().eq(0..n));
         let mut product = DMatrix::zeros(n, n);
         for top in 0..self.width {
             for left in 0..=top {
@@ -129,10 +132,18 @@ mod tests {
     }
 
     #[test]
+    fn nothing_has_no_products() {
+        let none = Jacobian::new(3, 0);
+        assert_eq!((none.count(), none.row(2).len()), (0, 0));
+        assert_eq!(none.squared(), DMatrix::zeros(3, 3));
+        assert_eq!(Jacobian::new(0, 4).squared().len(), 0);
+    }
+
+    #[test]
     fn products_are_those_of_dense_matrices() {
         // Within a block, of two and a half, and of three passes of 16.
         for dimension in [1, 7, 20, 45] {
-            let mut slopes = Slopes::new(dimension, 4);
+            let mut jacobian = Jacobian::new(dimension, 4);
             for first in (0..dimension).step_by(16) {
                 for datum in 0..30 {
                     let partials: Vec<f64> = (first..dimension)
@@ -140,21 +151,21 @@ mod tests {
                         .map(|i| slope(datum, i))
                         .collect();
                     let x = Real::<Grad<16>>::assembled(0.0, &partials);
-                    slopes.write(datum, first, &x);
+                    jacobian.write(datum, first, &x);
                 }
             }
-            assert_eq!(slopes.count(), 30);
+            assert_eq!(jacobian.count(), 30);
             let dense = DMatrix::from_fn(dimension, 30, |i, j| slope(j, i));
             let product = &dense * dense.transpose();
             // Sums of 30 products below 1.
-            assert!((slopes.squared() - product).amax() < 30.0 * 1e-15);
+            assert!((jacobian.squared() - product).amax() < 30.0 * 1e-15);
             let last = dimension - 1;
-            assert_eq!(slopes.row(last), dense.row(last).transpose());
+            assert_eq!(jacobian.row(last), dense.row(last).transpose());
             let numbers = DVector::from_fn(30, |j, _| slope(j, 3));
-            let times = slopes.times(&[last, 0], &numbers);
+            let times = jacobian.times(&[last, 0], &numbers);
             let expected = dense.select_rows(&[last, 0]) * &numbers;
             assert!((times - expected).amax() < 30.0 * 1e-15);
-            let one = slopes.of_some(&[last]);
+            let one = jacobian.of_some(&[last, 0]).of_some(&[0]);
             assert_eq!(one.row(0), dense.row(last).transpose());
         }
     }
