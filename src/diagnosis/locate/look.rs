@@ -46,6 +46,10 @@ const ALIKE: f64 = 0.1;
 /// A climb of the own parameters.
 const CLIMB: Climb =
     Climb { steps: 10, longest: 1.0, arrived: 0.02, leaps: 0 };
+/// The most tangents at given own parameters, and what a further one has to
+/// promise, in ln.
+const TANGENTS: usize = 4;
+const NEARBY: f64 = 0.5;
 
 /// A peak of the density of a model's own parameters at one process.
 #[derive(Debug, Clone)]
@@ -180,11 +184,7 @@ impl<'a, 'm> Sought<'a, 'm> {
         let ridge = Ridge { cells: self.cells, factor: &factor };
         let own = from.own.clone();
         let still = DVector::zeros(own.len());
-        // The first force may be far off: a second tangent says how high it is.
-        let Some((_, near)) = ridge.slope(&own, &still, from)? else {
-            return Ok(None);
-        };
-        let Some((slope, tangent)) = ridge.slope(&own, &still, &near)? else {
+        let Some((slope, tangent)) = ridge.slope(&own, &still, from)? else {
             return Ok(None);
         };
         let found =
@@ -230,27 +230,34 @@ pub(super) struct Ridge<'a, 'm> {
 }
 
 impl Ridge<'_, '_> {
-    /// A tangent at the force that one nearby says is best at some own
-    /// parameters, and the best waves by the new one; `None` where there is no
-    /// density.
+    /// A tangent at the force that is about best at some own parameters, from
+    /// one nearby, and the best waves by it; `None` where there is no density.
     ///
-    /// A second tangent, at the force that the first leads to, costs as much
-    /// and changes no weight that matters: climbs make one at each step, and
-    /// draws about the best are weighed.
+    /// Climbs make a tangent at each step, and draws about the best are weighed,
+    /// so it is made anew only where the force is far off: else draws in the
+    /// tails would count for too little.
     pub(super) fn best(
         &self,
         own: &DVector<f64>,
         from: &Tangent,
     ) -> Result<Option<(Tangent, Waves)>> {
-        let Some(waves) = from.waves(self.factor, own) else {
+        let Some(mut waves) = from.waves(self.factor, own) else {
             return Ok(None);
         };
-        let force = self.factor * &waves.mean;
-        let tangent = self.cells.tangent(force, own.clone())?;
-        Ok(tangent.and_then(|tangent| {
-            let waves = tangent.waves(self.factor, own)?;
-            Some((tangent, waves))
-        }))
+        let mut found: Option<(Tangent, Waves)> = None;
+        for _ in 0..TANGENTS {
+            let force = self.factor * &waves.mean;
+            let tangent = self.cells.tangent(force, own.clone())?;
+            let Some(tangent) = tangent else { break };
+            let Some(next) = tangent.waves(self.factor, own) else { break };
+            let gain = next.gain_from(&waves.mean);
+            waves.mean.copy_from(&next.mean);
+            found = Some((tangent, next));
+            if gain < NEARBY {
+                break;
+            }
+        }
+        Ok(found)
     }
 }
 

@@ -47,7 +47,7 @@ const FEW: Effort = Effort { last: (60, 60), ..EFFORT };
 const FAR: f64 = 3.0;
 /// The same where only about how much it brings is asked for.
 const GLANCE: Effort =
-    Effort { learning: 40, rounds: 2, last: (60, 60), ..EFFORT };
+    Effort { learning: 40, rounds: 2, last: (150, 150), ..EFFORT };
 
 /// The free-form force as a mechanism of its own, with the fit that it has.
 ///

@@ -139,3 +139,11 @@ pub(super) struct Waves {
     pub(super) mean: DVector<f64>,
     pub(super) precision: Cholesky<f64, Dyn>,
 }
+
+impl Waves {
+    /// How much higher, in ln, their mean is than other waves.
+    pub(super) fn gain_from(&self, other: &DVector<f64>) -> f64 {
+        let off = &self.mean - other;
+        0.5 * self.precision.l().tr_mul(&off).norm_squared()
+    }
+}
