@@ -325,21 +325,25 @@ pub fn climb(
     posterior: &Posterior<'_>,
     start: &[f64],
 ) -> Result<Option<Peak>> {
-    climb_unless(posterior, start, |_, _| false)
+    Climb::default().from(posterior, start, |_, _| false)
 }
 
-/// The same; `None` too where the climb comes to a place and height of which
-/// `ends_at` says that it leads nowhere new.
-pub(super) fn climb_unless(
-    posterior: &Posterior<'_>,
-    start: &[f64],
-    ends_at: impl Fn(&DVector<f64>, f64) -> bool,
-) -> Result<Option<Peak>> {
-    let landscape = Held { posterior, held: &[] };
-    let Some(slope) = landscape.slope_at(start)? else { return Ok(None) };
-    let start = (DVector::from_column_slice(start), slope, ());
-    let found = Climb::default().ascend(&landscape, start, ends_at)?;
-    Ok(found.map(Peak::of))
+impl Climb {
+    /// The peak that a start leads to; `None` where the start has no density,
+    /// or where the climb comes to a place and height of which `ends_at` says
+    /// that it leads nowhere new.
+    pub(super) fn from(
+        &self,
+        posterior: &Posterior<'_>,
+        start: &[f64],
+        ends_at: impl Fn(&DVector<f64>, f64) -> bool,
+    ) -> Result<Option<Peak>> {
+        let landscape = Held { posterior, held: &[] };
+        let Some(slope) = landscape.slope_at(start)? else { return Ok(None) };
+        let start = (DVector::from_column_slice(start), slope, ());
+        let found = self.ascend(&landscape, start, ends_at)?;
+        Ok(found.map(Peak::of))
+    }
 }
 
 /// The best place near a start among those that share some coordinates with

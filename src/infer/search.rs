@@ -14,7 +14,7 @@ use std::ops::Range;
 use nalgebra::DVector;
 use rayon::prelude::*;
 
-use super::climb::{Peak, climb_unless};
+use super::climb::{Climb, Peak};
 use super::places::{
     HeldGrid, Looked, STEPS_ASIDE, Step, by_height, glanced, spread, walked,
 };
@@ -79,16 +79,24 @@ pub(super) fn outlook(
     seed: Seed,
 ) -> Result<f64> {
     let mut search = Search::new(posterior, schedule);
+    search.climbs.arrived = ALL_THE_WAY;
     search.climb_from_starts(space, seed)?;
     search.look(space)?;
     let logs = search.peaks.iter().filter_map(Peak::log_evidence);
     Ok(super::log_sum_exp(logs.collect::<Vec<_>>().into_iter()))
 }
 
+/// A gain by one step below which a climb ends whose peak is counted by its
+/// normal approximation: two that end apart on a flat ridge, as that of two
+/// memories where one would do, would count twice.
+const ALL_THE_WAY: f64 = 1e-3;
+
 /// A search under way.
 struct Search<'a, 'm, 's> {
     posterior: &'a Posterior<'m>,
     schedule: &'a Schedule,
+    /// How all coordinates are climbed.
+    climbs: Climb,
     /// The highest first, none twice.
     peaks: Vec<Peak>,
     looked: Vec<Looked<'s>>,
@@ -96,7 +104,8 @@ struct Search<'a, 'm, 's> {
 
 impl<'a, 'm, 's> Search<'a, 'm, 's> {
     fn new(posterior: &'a Posterior<'m>, schedule: &'a Schedule) -> Self {
-        Self { posterior, schedule, peaks: Vec::new(), looked: Vec::new() }
+        let (climbs, peaks) = (Climb::default(), Vec::new());
+        Self { posterior, schedule, climbs, peaks, looked: Vec::new() }
     }
 
     fn climb_from_starts(
@@ -122,7 +131,8 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
                 peak.height > height && peak.distance(line) < ALIKE
             })
         };
-        let Some(peak) = climb_unless(self.posterior, start, known)? else {
+        let found = self.climbs.from(self.posterior, start, known)?;
+        let Some(peak) = found else {
             return Ok(());
         };
         let alike = |p: &Peak| p.distance(&peak.line) < ALIKE;
