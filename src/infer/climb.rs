@@ -144,7 +144,7 @@ const FREE: f64 = 1e-2;
 /// How many steps that climb follow a leap.
 const LANDING: usize = 3;
 
-/// Damping below which a step promises what there is to gain.
+/// Damping up to which a step is nearly a free one.
 const UNDAMPED: f64 = 0.1;
 
 /// By what damping is multiplied after a step that climbs.
@@ -325,20 +325,21 @@ pub fn climb(
     posterior: &Posterior<'_>,
     start: &[f64],
 ) -> Result<Option<Peak>> {
-    Climb::default().from(posterior, start, |_, _| false)
+    Climb::default().from(posterior, start, &[], |_, _| false)
 }
 
 impl Climb {
-    /// The peak that a start leads to; `None` where the start has no density,
-    /// or where the climb comes to a place and height of which `ends_at` says
-    /// that it leads nowhere new.
+    /// The peak that a start leads to, some coordinates held; `None` where the
+    /// start has no density, or where the climb comes to a place and height of
+    /// which `ends_at` says that it leads nowhere new.
     pub(super) fn from(
         &self,
         posterior: &Posterior<'_>,
         start: &[f64],
+        held: &[usize],
         ends_at: impl Fn(&DVector<f64>, f64) -> bool,
     ) -> Result<Option<Peak>> {
-        let landscape = Held { posterior, held: &[] };
+        let landscape = Held { posterior, held };
         let Some(slope) = landscape.slope_at(start)? else { return Ok(None) };
         let start = (DVector::from_column_slice(start), slope, ());
         let found = self.ascend(&landscape, start, ends_at)?;
@@ -354,12 +355,8 @@ pub(super) fn climb_holding(
     held: &[usize],
     steps: usize,
 ) -> Result<Option<Peak>> {
-    let landscape = Held { posterior, held };
-    let Some(slope) = landscape.slope_at(start)? else { return Ok(None) };
     let climb = Climb { steps, leaps: 0, ..Climb::default() };
-    let start = (DVector::from_column_slice(start), slope, ());
-    let found = climb.ascend(&landscape, start, |_, _| false)?;
-    Ok(found.map(Peak::of))
+    climb.from(posterior, start, held, |_, _| false)
 }
 
 #[cfg(test)]

@@ -131,7 +131,7 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
                 peak.height > height && peak.distance(line) < ALIKE
             })
         };
-        let found = self.climbs.from(self.posterior, start, known)?;
+        let found = self.climbs.from(self.posterior, start, &[], known)?;
         let Some(peak) = found else {
             return Ok(());
         };
