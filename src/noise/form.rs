@@ -67,11 +67,25 @@ impl Form {
         all
     }
 
-    /// Whether it has nothing that another one lacks, and less.
+    /// The blocks that remember.
+    fn processes(&self) -> Vec<&str> {
+        let mut all = self.blocks();
+        all.retain(|block| *block != "white");
+        all
+    }
+
+    fn has_white(&self) -> bool {
+        self.blocks().contains(&"white")
+    }
+
+    /// Whether it has nothing that another one lacks, and less. A process that
+    /// forgets within a step makes white errors.
     #[must_use]
     pub fn is_simpler_than(&self, other: &Self) -> bool {
-        let blocks = other.blocks();
-        self.blocks().iter().all(|block| blocks.contains(block))
+        let (own, its) = (self.processes(), other.processes());
+        let leaves_one = its.len() > own.len();
+        own.iter().all(|process| its.contains(process))
+            && (!self.has_white() || other.has_white() || leaves_one)
             && !self.is_like(other)
             && self.has_tails <= other.has_tails
             && self.grows <= other.grows
@@ -109,7 +123,12 @@ mod tests {
             |a: &str, b: &str| Form::of(a).is_simpler_than(&Form::of(b));
         assert!(simpler("iid", "white + tails"));
         assert!(simpler("ar(1) + tails", "matern32 + ou + tails"));
-        assert!(!simpler("ou + white", "matern32 + ou"));
+        assert!(simpler("iid", "ar(1)"));
+        assert!(simpler("matern32 + white", "matern32 + ou"));
+        assert!(simpler("ou + white + tails", "matern32 + ou + tails"));
+        assert!(!simpler("ou + white", "matern32 + white"));
+        assert!(!simpler("ou + white", "ou"));
+        assert!(!simpler("ou", "matern32"));
         assert!(!simpler("white + tails + growth", "white + growth"));
         assert!(!simpler("white + tails", "white + growth"));
         assert!(!like("iid", "white + growth"));

@@ -349,26 +349,23 @@ fn doubly_decorated<P: Program>(all: &[Weighed<'_, P>]) -> Vec<Form> {
     grow.map(|form| Form { has_tails: true, ..form }).collect()
 }
 
-/// Whether it has more evidence than each simpler noise, in either way, and on
-/// the whole than its like with the priors of the named one: a noise that does
-/// not says the same in more parameters, or in other priors.
+/// Whether it has more evidence, in either way, than each simpler noise and
+/// than its like with the priors of the named one: a noise that does not says
+/// the same in more parameters, or in other priors.
 fn pays<P: Program>(one: &Weighed<'_, P>, all: &[Weighed<'_, P>]) -> bool {
     let form = one.form();
     let named = all.iter().find(|other| other.program.is_named());
     let memory = named.map(|named| named.form().memory);
     let is_stated = |form: &Form| Some(&form.memory) == memory.as_ref();
-    let says_the_same = |other: &Weighed<'_, P>| {
+    let says_the_same =
+        |its: &Form| is_stated(its) && !is_stated(&form) && its.is_like(&form);
+    let goes_before = |other: &&Weighed<'_, P>| {
         let its = other.form();
-        (is_stated(&its) && !is_stated(&form) && its.is_like(&form))
-            && either_way(one.logs()) <= either_way(other.logs()) + MORE
+        its.is_simpler_than(&form) || says_the_same(&its)
     };
-    if all.iter().any(says_the_same) {
-        return false;
-    }
-    let simpler =
-        all.iter().filter(|other| other.form().is_simpler_than(&form));
-    let ([without, with], logs) = (most(simpler), one.logs());
-    logs[0] > without + MORE || logs[1] > with + MORE
+    let log = either_way(one.logs());
+    let mut before = all.iter().filter(goes_before);
+    before.all(|other| log > either_way(other.logs()) + MORE)
 }
 
 /// The most evidence of some noises, in ln, in either way.
