@@ -8,6 +8,8 @@
 //! say themselves what a value tells. The prior adds its own curvature,
 //! parameter by parameter.
 
+use std::ops::Range;
+
 use nalgebra::DVector;
 
 use super::density::Density;
@@ -28,8 +30,8 @@ use crate::scalar::{Forward, Grad, Kind, Real};
 #[derive(Debug)]
 struct Columns {
     jacobian: Jacobian,
-    /// The first of the coordinates that are looked at, and the next column.
-    first: usize,
+    /// How many coordinates earlier passes looked at, and the next column.
+    done: usize,
     next: usize,
     /// Minus the second derivative of each prior's log density along the line.
     bends: Vec<f64>,
@@ -37,7 +39,7 @@ struct Columns {
 
 impl Columns {
     fn push<K: Forward>(&mut self, x: &Real<K>) {
-        self.jacobian.write(self.next, self.first, x);
+        self.jacobian.write(self.next, self.done, x);
         self.next += 1;
     }
 }
@@ -51,7 +53,7 @@ struct Part<'c, K: Kind> {
 
 impl<K: Forward> Listener<K> for Part<'_, K> {
     fn parameter(&mut self, declaration: &Declaration<'_, K>) {
-        if self.columns.first == 0 {
+        if self.columns.done == 0 {
             self.columns.bends.push(bend(declaration));
         }
     }
@@ -110,52 +112,120 @@ fn bend<K: Kind>(declaration: &Declaration<'_, K>) -> f64 {
 /// For how many columns room is made at once.
 const RESERVED: usize = 256;
 
-/// The information of a program at a place on the real line.
+/// How many coordinates a pass takes at the most, of few and of many.
+const WIDEST: [usize; 2] = [8, 16];
+
+/// The information of a program at a place on the real line, of some of the
+/// coordinates.
 pub(super) fn information<P: Program>(
     program: &P,
     z: &[f64],
+    of: Range<usize>,
 ) -> Result<Information> {
-    let mut gradient = DVector::zeros(z.len());
-    let jacobian = Jacobian::new(z.len(), RESERVED);
+    let count = of.len();
+    let mut gradient = DVector::zeros(count);
+    let jacobian = Jacobian::new(count, RESERVED);
     let mut columns =
-        Columns { jacobian, first: 0, next: 0, bends: Vec::new() };
-    let density = match z.len() {
-        0..=2 => fill::<Grad<2>, P>(program, z, &mut gradient, &mut columns),
-        3..=4 => fill::<Grad<4>, P>(program, z, &mut gradient, &mut columns),
-        5..=16 => fill::<Grad<8>, P>(program, z, &mut gradient, &mut columns),
-        _ => fill::<Grad<16>, P>(program, z, &mut gradient, &mut columns),
-    }?;
+        Columns { jacobian, done: 0, next: 0, bends: Vec::new() };
+    let [few, many] = WIDEST;
+    let widest = if count > many { many } else { few };
+    let mut last = None;
+    while columns.done < count {
+        let (first, left) = (of.start + columns.done, count - columns.done);
+        let slots = &mut gradient.as_mut_slice()[columns.done..];
+        let wide = left.next_power_of_two().clamp(2, widest);
+        let density = match wide {
+            2 => pass::<Grad<2>, P>(program, z, first, slots, &mut columns),
+            4 => pass::<Grad<4>, P>(program, z, first, slots, &mut columns),
+            8 => pass::<Grad<8>, P>(program, z, first, slots, &mut columns),
+            _ => pass::<Grad<16>, P>(program, z, first, slots, &mut columns),
+        }?;
+        columns.done += wide;
+        let is_zero = density.rejected.is_some();
+        last = Some(density);
+        if is_zero {
+            break;
+        }
+    }
+    let density =
+        last.ok_or_else(|| Error::inference("the model has no parameters"))?;
     let Columns { jacobian, bends, .. } = columns;
     let mut precision = jacobian.squared();
-    for (i, bend) in bends.iter().take(z.len()).enumerate() {
+    for (i, bend) in bends.into_iter().skip(of.start).take(count).enumerate() {
         precision[(i, i)] += bend;
     }
     Ok(Information { density, gradient, precision, jacobian })
 }
 
-fn fill<K: Number + Forward, P: Program>(
+/// One run, for as many coordinates as its numbers carry derivatives of.
+fn pass<K: Number + Forward, P: Program>(
     program: &P,
     z: &[f64],
-    gradient: &mut DVector<f64>,
+    first: usize,
+    gradient: &mut [f64],
     columns: &mut Columns,
 ) -> Result<Density> {
-    let mut last = None;
-    for first in (0..z.len()).step_by(K::DIRECTIONS) {
-        (columns.first, columns.next) = (first, 0);
-        let source = Source::Line { z, first };
-        let mut part = Part { columns: &mut *columns, log_likelihood: None };
-        let (density, prior, jacobian, likelihood) =
-            run::<K, P>(program, source, Some(z.len()), Some(&mut part))?;
-        let total = prior + jacobian + likelihood;
-        for i in 0..K::DIRECTIONS.min(z.len() - first) {
-            gradient[first + i] = total.partial(i);
-        }
-        let zero = density.rejected.is_some();
-        last = Some(density);
-        columns.jacobian.resize(columns.next);
-        if zero {
-            break;
+    columns.next = 0;
+    let source = Source::Line { z, first };
+    let mut part = Part { columns: &mut *columns, log_likelihood: None };
+    let (density, prior, jacobian, likelihood) =
+        run::<K, P>(program, source, Some(z.len()), Some(&mut part))?;
+    let total = prior + jacobian + likelihood;
+    for (i, slot) in gradient.iter_mut().take(K::DIRECTIONS).enumerate() {
+        *slot = total.partial(i);
+    }
+    columns.jacobian.resize(columns.next);
+    Ok(density)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::model::{Label, Posterior, Run};
+    use crate::prior::{AnyPrior, Normal};
+
+    /// 0.5 ~ N(a'x, 1) was seen, with x ~ N(0, 1) and a known.
+    struct Linear(Vec<f64>);
+
+    impl Program for Linear {
+        fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
+            let standard = AnyPrior::Normal(0.0, 1.0);
+            let x =
+                run.vector(Label::new("x", "1"), self.0.len(), standard)?;
+            let mut mean = Real::new(0.0);
+            for (a, x) in self.0.iter().zip(&x) {
+                mean += *x * *a;
+            }
+            run.observe_each(&0.5, Normal::new(mean, Real::new(1.0)))
         }
     }
-    last.ok_or_else(|| Error::inference("the model has no parameters"))
+
+    #[test]
+    fn passes_of_any_widths_add_up() {
+        for count in [1, 2, 3, 5, 9, 11, 16, 17, 19, 33] {
+            let weights = |i: usize| (0.7 * i as f64).cos();
+            let program = Linear((0..count).map(weights).collect());
+            let posterior = Posterior::new(&program).unwrap();
+            let z: Vec<f64> =
+                (0..count).map(|i| (0.3 * i as f64).sin()).collect();
+            let a = DVector::from_vec(program.0.clone());
+            let x = DVector::from_column_slice(&z);
+            let found = posterior.information(&z).unwrap();
+            let precision =
+                DMatrix::identity(count, count) + &a * a.transpose();
+            // Second differences of the prior's density over steps of 1e-3.
+            assert!((&found.precision - precision).amax() < 1e-8, "{count}");
+            let gradient = &a * (0.5 - a.dot(&x)) - &x;
+            assert!((&found.gradient - gradient).amax() < 1e-13, "{count}");
+            for i in 0..count {
+                let along = posterior.information_along(&z, i).unwrap();
+                assert_eq!(along.density, found.density);
+                assert_eq!(along.gradient[0], found.gradient[i]);
+                assert_eq!(along.precision[0], found.precision[(i, i)]);
+                assert_eq!(along.jacobian.row(0), found.jacobian.row(i));
+            }
+        }
+    }
 }

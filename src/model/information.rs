@@ -31,6 +31,18 @@ impl Information {
         }
     }
 
+    /// Of some of the coordinates.
+    pub(super) fn of_some(self, coordinates: &[usize]) -> Self {
+        let Self { density, gradient, precision, jacobian } = self;
+        let rows = precision.select_rows(coordinates);
+        Self {
+            density,
+            gradient: gradient.select_rows(coordinates),
+            precision: rows.select_columns(coordinates),
+            jacobian: jacobian.of_some(coordinates),
+        }
+    }
+
     /// Multiplies the density by a power of another, of some of the
     /// coordinates.
     pub(crate) fn add(&mut self, other: &Self, places: &[usize], power: f64) {

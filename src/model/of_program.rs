@@ -36,6 +36,14 @@ impl<P: Program> Model for P {
     }
 
     fn information(&self, z: &[f64]) -> Result<Information> {
-        fisher::information(self, z)
+        fisher::information(self, z, 0..z.len())
+    }
+
+    fn information_along(
+        &self,
+        z: &[f64],
+        coordinate: usize,
+    ) -> Result<Information> {
+        fisher::information(self, z, coordinate..coordinate + 1)
     }
 }

@@ -159,6 +159,21 @@ impl<'m> Posterior<'m> {
         Ok(information)
     }
 
+    /// The same along one coordinate alone, which costs little more than the
+    /// density.
+    ///
+    /// # Errors
+    /// As [`Posterior::density`].
+    pub fn information_along(
+        &self,
+        z: &[f64],
+        coordinate: usize,
+    ) -> Result<Information> {
+        let information = self.model.information_along(z, coordinate)?;
+        self.tally.count(GRADIENTS, &information.density);
+        Ok(information)
+    }
+
     /// The density at a point, with a listener of one's own.
     ///
     /// # Errors

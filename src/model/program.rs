@@ -84,4 +84,16 @@ pub trait Model: Sync {
     /// # Errors
     /// As [`Model::evaluate`].
     fn information(&self, z: &[f64]) -> Result<Information>;
+
+    /// The same along one coordinate alone.
+    ///
+    /// # Errors
+    /// As [`Model::evaluate`].
+    fn information_along(
+        &self,
+        z: &[f64],
+        coordinate: usize,
+    ) -> Result<Information> {
+        Ok(self.information(z)?.of_some(&[coordinate]))
+    }
 }

@@ -1,7 +1,5 @@
 //! A model of which some parameters are known.
 
-use nalgebra::DVector;
-
 use super::density::{Density, Weights};
 use super::information::Information;
 use super::label::Label;
@@ -145,15 +143,9 @@ impl Model for Slice<'_> {
 
     fn information(&self, z: &[f64]) -> Result<Information> {
         let line = self.filled(&self.line, z);
-        let Information { density, gradient, precision, jacobian } =
-            self.model.information(&line)?;
-        let own = self.unknown.iter().map(|&i| gradient[i]);
-        let gradient = DVector::from_iterator(z.len(), own);
-        let rows = precision.select_rows(&self.unknown);
-        let precision = rows.select_columns(&self.unknown);
-        let density = self.given(density, true);
-        let jacobian = jacobian.of_some(&self.unknown);
-        Ok(Information { density, gradient, precision, jacobian })
+        let mut own = self.model.information(&line)?.of_some(&self.unknown);
+        own.density = self.given(own.density, true);
+        Ok(own)
     }
 }
 
@@ -274,6 +266,8 @@ mod tests {
         assert_eq!(found.density.log_likelihood, all.density.log_likelihood);
         assert_eq!(found.gradient[0], all.gradient[1]);
         assert_eq!(found.precision[(0, 0)], all.precision[(1, 1)]);
+        let along = own.information_along(&z, 0).unwrap();
+        assert_eq!(along.precision, found.precision);
         let mut gradient = [0.0];
         own.gradient(&z, Weights::LINE, &mut gradient).unwrap();
         assert_eq!(gradient[0], all.gradient[1]);

@@ -165,8 +165,13 @@ impl Screen<'_, '_> {
         let prior = &self.amplitude.prior;
         let signed = self.amplitude.is_signed();
         let small = if signed { 0.0 } else { on_line(prior, HARDLY) };
-        let informed = self.informed(small)?;
-        let Some(effects) = self.effects(&informed, small) else {
+        let along = self.along(small)?;
+        let Some(last) = along.iter().rposition(Option::is_some) else {
+            return Ok(None);
+        };
+        let whole = self.line(small, &self.edges.onwards(last));
+        let whole = self.posterior.information(&whole)?;
+        let Some(effects) = self.effects(&along, &whole, small) else {
             return Ok(None);
         };
         let Effects { columns, follows, score } = effects;
@@ -180,47 +185,48 @@ impl Screen<'_, '_> {
         }))
     }
 
-    /// The density with a small amplitude from each border on.
-    fn informed(&self, small: f64) -> Result<Vec<Option<Information>>> {
+    /// The density with a small amplitude from each border on, along it.
+    fn along(&self, small: f64) -> Result<Vec<Option<Information>>> {
+        let index = self.others.before.len();
         (0..self.edges.borders())
             .into_par_iter()
             .map(|i| {
                 let line = self.line(small, &self.edges.onwards(i));
-                let about = self.posterior.information(&line)?;
+                let about = self.posterior.information_along(&line, index)?;
                 Ok(about.density.on_line().is_finite().then_some(about))
             })
             .collect()
     }
 
-    /// What the amplitude does from each border on; `None` where nothing can
-    /// be told.
+    /// What the amplitude does from each border on, all else being as with it
+    /// from one of them on: it is small. `None` where nothing can be told.
     fn effects(
         &self,
-        informed: &[Option<Information>],
+        along: &[Option<Information>],
+        whole: &Information,
         small: f64,
     ) -> Option<Effects> {
         let (stretch, pull) = along_line(&self.amplitude.prior, small);
         let index = self.others.before.len();
-        let last = informed.iter().flatten().last()?;
         let own: Vec<usize> = (0..index)
-            .chain(index + 1 + self.edges.count()..last.gradient.len())
+            .chain(index + 1 + self.edges.count()..whole.gradient.len())
             .collect();
-        let inner = last.precision.select_rows(&own).select_columns(&own);
+        let inner = whole.precision.select_rows(&own).select_columns(&own);
         let lower = inner.cholesky()?.l();
         let rest =
-            lower.solve_lower_triangular(&last.gradient.select_rows(&own))?;
-        let data = last.jacobian.count();
-        let mut effects = Effects::none(informed.len(), own.len(), data);
-        for (i, about) in informed.iter().enumerate() {
+            lower.solve_lower_triangular(&whole.gradient.select_rows(&own))?;
+        let data = whole.jacobian.count();
+        let mut effects = Effects::none(along.len(), own.len(), data);
+        for (i, about) in along.iter().enumerate() {
             let Some(about) = about.as_ref() else { continue };
             if about.jacobian.count() != data {
                 continue;
             }
-            let column = about.jacobian.row(index) / stretch;
-            let across = about.jacobian.times(&own, &column);
+            let column = about.jacobian.row(0) / stretch;
+            let across = whole.jacobian.times(&own, &column);
             let across = lower.solve_lower_triangular(&across)?;
             effects.score[i] =
-                (about.gradient[index] - pull) / stretch - across.dot(&rest);
+                (about.gradient[0] - pull) / stretch - across.dot(&rest);
             effects.columns.set_column(i, &column);
             effects.follows.set_column(i, &across);
         }

@@ -103,7 +103,7 @@ impl Tangent {
     ) -> Option<Waves> {
         let n = factor.ncols();
         let precision = DMatrix::identity(n, n)
-            + factor.tr_mul(&(&self.of_force * factor));
+            + factor.transpose() * (&self.of_force * factor);
         let precision = precision.cholesky()?;
         let pull = &self.pulls.0 + &self.of_force * &self.force
             - &self.across * (own - &self.own);
