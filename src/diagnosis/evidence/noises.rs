@@ -349,23 +349,29 @@ fn doubly_decorated<P: Program>(all: &[Weighed<'_, P>]) -> Vec<Form> {
     grow.map(|form| Form { has_tails: true, ..form }).collect()
 }
 
-/// Whether it has more evidence, in either way, than each simpler noise and
-/// than its like with the priors of the named one: a noise that does not says
-/// the same in more parameters, or in other priors.
+/// Whether it has more evidence than each simpler noise, in the way that suits
+/// it or one nearly as good, and on the whole than its like with the priors of
+/// the named one: a noise that does not says the same in more parameters, or in
+/// other priors.
 fn pays<P: Program>(one: &Weighed<'_, P>, all: &[Weighed<'_, P>]) -> bool {
     let form = one.form();
     let named = all.iter().find(|other| other.program.is_named());
     let memory = named.map(|named| named.form().memory);
     let is_stated = |form: &Form| Some(&form.memory) == memory.as_ref();
-    let says_the_same =
-        |its: &Form| is_stated(its) && !is_stated(&form) && its.is_like(&form);
-    let goes_before = |other: &&Weighed<'_, P>| {
+    let says_the_same = |other: &Weighed<'_, P>| {
         let its = other.form();
-        its.is_simpler_than(&form) || says_the_same(&its)
+        (is_stated(&its) && !is_stated(&form) && its.is_like(&form))
+            && either_way(one.logs()) <= either_way(other.logs()) + MORE
     };
-    let log = either_way(one.logs());
-    let mut before = all.iter().filter(goes_before);
-    before.all(|other| log > either_way(other.logs()) + MORE)
+    if all.iter().any(says_the_same) {
+        return false;
+    }
+    let simpler =
+        all.iter().filter(|other| other.form().is_simpler_than(&form));
+    let [without, with] = one.logs();
+    let least = without.max(with) - MORE;
+    let mut ways = [without, with].into_iter().zip(most(simpler));
+    ways.any(|(log, most)| log >= least && log > most + MORE)
 }
 
 /// The most evidence of some noises, in ln, in either way.
