@@ -349,10 +349,9 @@ fn doubly_decorated<P: Program>(all: &[Weighed<'_, P>]) -> Vec<Form> {
     grow.map(|form| Form { has_tails: true, ..form }).collect()
 }
 
-/// Whether it has more evidence than each simpler noise, in the way that suits
-/// it or one nearly as good, and on the whole than its like with the priors of
-/// the named one: a noise that does not says the same in more parameters, or in
-/// other priors.
+/// Whether it has more evidence than each simpler noise, in either way, and on
+/// the whole than its like with the priors of the named one: a noise that does
+/// not says the same in more parameters, or in other priors.
 fn pays<P: Program>(one: &Weighed<'_, P>, all: &[Weighed<'_, P>]) -> bool {
     let form = one.form();
     let named = all.iter().find(|other| other.program.is_named());
@@ -368,10 +367,8 @@ fn pays<P: Program>(one: &Weighed<'_, P>, all: &[Weighed<'_, P>]) -> bool {
     }
     let simpler =
         all.iter().filter(|other| other.form().is_simpler_than(&form));
-    let [without, with] = one.logs();
-    let least = without.max(with) - MORE;
-    let mut ways = [without, with].into_iter().zip(most(simpler));
-    ways.any(|(log, most)| log >= least && log > most + MORE)
+    let ([without, with], logs) = (most(simpler), one.logs());
+    logs[0] > without + MORE || logs[1] > with + MORE
 }
 
 /// The most evidence of some noises, in ln, in either way.
