@@ -17,7 +17,7 @@ use super::information::Information;
 use super::jacobian::Jacobian;
 use super::listener::{Declaration, Listener};
 use super::number::Number;
-use super::pass::run;
+use super::pass::{passes, run};
 use super::program::Program;
 use super::run::Source;
 use crate::error::{Error, Outcome, Result};
@@ -30,10 +30,13 @@ use crate::scalar::{Forward, Grad, Kind, Real};
 #[derive(Debug)]
 struct Columns {
     jacobian: Jacobian,
-    /// How many coordinates earlier passes looked at, and the next column.
+    /// The coordinates that are looked at.
+    of: Range<usize>,
+    /// How many of these earlier passes looked at, and the next column.
     done: usize,
     next: usize,
-    /// Minus the second derivative of each prior's log density along the line.
+    /// Minus the second derivative of each prior's log density along the line;
+    /// zero of those that are not looked at.
     bends: Vec<f64>,
 }
 
@@ -53,9 +56,11 @@ struct Part<'c, K: Kind> {
 
 impl<K: Forward> Listener<K> for Part<'_, K> {
     fn parameter(&mut self, declaration: &Declaration<'_, K>) {
-        if self.columns.done == 0 {
-            self.columns.bends.push(bend(declaration));
-        }
+        let Columns { of, done: 0, bends, .. } = &mut *self.columns else {
+            return;
+        };
+        let is_asked = of.contains(&bends.len());
+        bends.push(if is_asked { bend(declaration) } else { 0.0 });
     }
 
     fn log_likelihood(&mut self) -> Option<Real<K>> {
@@ -113,7 +118,7 @@ fn bend<K: Kind>(declaration: &Declaration<'_, K>) -> f64 {
 const RESERVED: usize = 256;
 
 /// How many coordinates a pass takes at the most, of few and of many.
-const WIDEST: [usize; 2] = [8, 16];
+const MOST: [usize; 2] = [8, 16];
 
 /// The information of a program at a place on the real line, of some of the
 /// coordinates.
@@ -124,23 +129,25 @@ pub(super) fn information<P: Program>(
 ) -> Result<Information> {
     let count = of.len();
     let mut gradient = DVector::zeros(count);
-    let jacobian = Jacobian::new(count, RESERVED);
-    let mut columns =
-        Columns { jacobian, done: 0, next: 0, bends: Vec::new() };
-    let [few, many] = WIDEST;
-    let widest = if count > many { many } else { few };
+    let mut columns = Columns {
+        jacobian: Jacobian::new(count, RESERVED),
+        of: of.clone(),
+        done: 0,
+        next: 0,
+        bends: Vec::new(),
+    };
+    let [few, many] = MOST;
     let mut last = None;
-    while columns.done < count {
-        let (first, left) = (of.start + columns.done, count - columns.done);
-        let slots = &mut gradient.as_mut_slice()[columns.done..];
-        let wide = left.next_power_of_two().clamp(2, widest);
+    for (done, wide) in passes(count, if count > many { many } else { few }) {
+        (columns.done, columns.next) = (done, 0);
+        let (first, slots) =
+            (of.start + done, &mut gradient.as_mut_slice()[done..]);
         let density = match wide {
             2 => pass::<Grad<2>, P>(program, z, first, slots, &mut columns),
             4 => pass::<Grad<4>, P>(program, z, first, slots, &mut columns),
             8 => pass::<Grad<8>, P>(program, z, first, slots, &mut columns),
             _ => pass::<Grad<16>, P>(program, z, first, slots, &mut columns),
         }?;
-        columns.done += wide;
         let is_zero = density.rejected.is_some();
         last = Some(density);
         if is_zero {
@@ -165,7 +172,6 @@ fn pass<K: Number + Forward, P: Program>(
     gradient: &mut [f64],
     columns: &mut Columns,
 ) -> Result<Density> {
-    columns.next = 0;
     let source = Source::Line { z, first };
     let mut part = Part { columns: &mut *columns, log_likelihood: None };
     let (density, prior, jacobian, likelihood) =

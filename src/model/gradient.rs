@@ -2,7 +2,7 @@
 
 use super::density::{Density, Weights};
 use super::number::Number;
-use super::pass::run;
+use super::pass::{passes, run};
 use super::program::Program;
 use super::run::Source;
 use crate::error::{Error, Result};
@@ -22,17 +22,12 @@ pub(super) fn gradient<P: Program>(
     weights: Weights,
     gradient: &mut [f64],
 ) -> Result<Density> {
-    match z.len() {
-        0..=2 => forward::<Grad<2>, P>(program, z, weights, gradient),
-        3..=4 => forward::<Grad<4>, P>(program, z, weights, gradient),
-        n if n < REVERSE_FROM => {
-            forward::<Grad<8>, P>(program, z, weights, gradient)
-        }
-        _ => match reverse(program, z, weights, gradient)? {
-            Some(density) => Ok(density),
-            None => forward::<Grad<8>, P>(program, z, weights, gradient),
-        },
+    if z.len() >= REVERSE_FROM
+        && let Some(density) = reverse(program, z, weights, gradient)?
+    {
+        return Ok(density);
     }
+    forward(program, z, weights, gradient)
 }
 
 fn weighted<K: Number>(
@@ -60,32 +55,49 @@ fn reverse<P: Program>(
     Ok(recording.gradient(&total, gradient).then_some(density))
 }
 
-/// The gradient, as many directions at a time as the kind carries.
-fn forward<K: Number + Forward, P: Program>(
+/// How many directions a pass takes at the most.
+const MOST: usize = 8;
+
+/// The gradient, some directions at a time.
+fn forward<P: Program>(
     program: &P,
     z: &[f64],
     weights: Weights,
     gradient: &mut [f64],
 ) -> Result<Density> {
     let mut density = None;
-    let mut first = 0;
-    loop {
-        let source = Source::Line { z, first };
-        let (found, prior, jacobian, likelihood) =
-            run::<K, P>(program, source, Some(z.len()), None)?;
-        let total = weighted(weights, [prior, jacobian, likelihood]);
-        for (i, slot) in gradient.iter_mut().skip(first).enumerate() {
-            if i < K::DIRECTIONS {
-                *slot = total.partial(i);
-            }
-        }
+    // Without parameters there is a density too.
+    for (first, wide) in passes(z.len().max(1), MOST) {
+        let slots = &mut gradient[first..];
+        let found = match wide {
+            2 => pass::<Grad<2>, P>(program, z, weights, first, slots),
+            4 => pass::<Grad<4>, P>(program, z, weights, first, slots),
+            _ => pass::<Grad<8>, P>(program, z, weights, first, slots),
+        }?;
         let slides = density.map_or(0, |d: Density| d.slides) + found.slides;
         let zero = found.rejected.is_some();
         density = Some(Density { slides, ..found });
-        first += K::DIRECTIONS;
-        if first >= z.len() || zero {
+        if zero {
             break;
         }
     }
     density.ok_or_else(|| Error::inference("the model has no parameters"))
+}
+
+/// The derivatives along as many directions as the kind carries.
+fn pass<K: Number + Forward, P: Program>(
+    program: &P,
+    z: &[f64],
+    weights: Weights,
+    first: usize,
+    gradient: &mut [f64],
+) -> Result<Density> {
+    let source = Source::Line { z, first };
+    let (density, prior, jacobian, likelihood) =
+        run::<K, P>(program, source, Some(z.len()), None)?;
+    let total = weighted(weights, [prior, jacobian, likelihood]);
+    for (i, slot) in gradient.iter_mut().take(K::DIRECTIONS).enumerate() {
+        *slot = total.partial(i);
+    }
+    Ok(density)
 }

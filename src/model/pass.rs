@@ -11,6 +11,22 @@ use crate::scalar::Real;
 /// The density; ln of the prior, of the Jacobian and of the likelihood.
 pub(super) type Parts<K> = (Density, Real<K>, Real<K>, Real<K>);
 
+/// How so many coordinates are taken forward: where each pass begins, and how
+/// many directions its numbers carry: the most at a time, and at last no more
+/// than what is left needs.
+pub(super) fn passes(
+    count: usize,
+    most: usize,
+) -> impl Iterator<Item = (usize, usize)> {
+    let mut first = 0;
+    std::iter::from_fn(move || {
+        let left = count.checked_sub(first).filter(|left| *left > 0)?;
+        let (begin, wide) = (first, left.next_power_of_two().clamp(2, most));
+        first += wide;
+        Some((begin, wide))
+    })
+}
+
 /// One run of the body, its failures sorted into density zero and the rest.
 pub(super) fn run<K: Number, P: Program>(
     program: &P,
@@ -54,4 +70,20 @@ pub(super) fn run<K: Number, P: Program>(
         }
         Ok((density, parts.0, parts.1, parts.2))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::passes;
+
+    #[test]
+    fn passes_are_no_wider_than_what_is_left_needs() {
+        let of = |count, most| passes(count, most).collect::<Vec<_>>();
+        assert_eq!(of(0, 8), []);
+        assert_eq!(of(1, 8), [(0, 2)]);
+        assert_eq!(of(3, 8), [(0, 4)]);
+        assert_eq!(of(11, 8), [(0, 8), (8, 4)]);
+        assert_eq!(of(16, 8), [(0, 8), (8, 8)]);
+        assert_eq!(of(17, 16), [(0, 16), (16, 2)]);
+    }
 }
