@@ -15,7 +15,7 @@ use crate::block::{Field, List};
 use crate::error::{Error, Outcome, Result, Stop};
 use crate::mechanism::{Change, Mechanism, Role, Unknown};
 use crate::noise::{self, Form, NoiseEntry};
-use crate::observe::{Event, Quantity};
+use crate::observe::{Event, MotionKind, Quantity};
 use crate::physics::friction::LawSum;
 use crate::physics::{Rest, State};
 use crate::prior::AnyPrior;
@@ -269,7 +269,7 @@ impl Assembled {
         let values = self.law_values(natural);
         let law = self.friction.with(&values);
         let change = self.change_with(natural)?;
-        let rest = self.event.rest(&law, Some(&change))?;
+        let rest = Plain::rest(&self.event, &law, Some(&change))?;
         let shown = |r: Rest<Plain>| Rest { time: r.time + change.clock, ..r };
         Ok(rest.map(shown))
     }

@@ -6,11 +6,14 @@
 use crate::context::Context;
 use crate::mechanism::ChangeKind;
 use crate::noise::NoiseKind;
+use crate::observe::MotionKind;
 use crate::physics::friction::LawKind;
 use crate::scalar::{Grad, Kind, Plain, Reverse};
 
 /// A kind of number with a home for its buffers on every thread.
-pub trait Number: Kind + LawKind + NoiseKind + ChangeKind {
+pub trait Number:
+    Kind + LawKind + NoiseKind + ChangeKind + MotionKind
+{
     /// Runs `work` with this thread's context for this kind.
     fn with_context<R>(work: impl FnOnce(&Context<Self>) -> R) -> R;
 }

@@ -1,12 +1,11 @@
 //! What came out of a slide: the motion at the moments that were asked for.
 
 use super::event::Event;
+use super::moments::{Moments, MotionKind};
 use super::series::{Quantity, Series};
-use crate::context::Buffer;
 use crate::declared::Declared;
 use crate::error::{Error, Stop};
-use crate::mechanism::Change;
-use crate::physics::{Friction, Rest, State, sample};
+use crate::physics::{Friction, Rest, is_exact, sample_exact};
 use crate::scalar::{Kind, Real};
 
 /// The motion of one event under one friction law.
@@ -14,9 +13,7 @@ use crate::scalar::{Kind, Real};
 pub struct Flow<'a, K: Kind, L> {
     event: &'a Event,
     friction: &'a Declared<'a, K, L>,
-    speed: Buffer<'a, K>,
-    distance: Buffer<'a, K>,
-    acceleration: Buffer<'a, K>,
+    moments: Moments<'a, K>,
 }
 
 impl Event {
@@ -39,60 +36,30 @@ impl Event {
     /// # Errors
     /// [`Stop::Reject`] where the law has no flow with these values.
     #[inline]
-    pub fn slide<'a, K: Kind, L: Friction<K>>(
+    pub fn slide<'a, K: MotionKind, L: Friction<K>>(
         &'a self,
         friction: &'a Declared<'_, K, L>,
     ) -> Result<Flow<'a, K, L>, Stop> {
         let context = friction.context();
         context.count_slide();
-        let mut flow = Flow::new(self, friction);
         let speed_only = self.velocity.window() == 0.0
             && self.position.is_empty()
             && self.acceleration.is_empty();
+        let mut moments = Moments::new(context, speed_only);
+        let (path, law) = (self.path(), friction.block());
         let change = friction.change().filter(|change| change.moves());
-        if change.is_some() || self.has_depth_steps() {
-            let none = Change::default();
-            let change = change.unwrap_or(&none);
-            let visit = |state| flow.push(state, speed_only);
-            self.slide_changed(friction, change, speed_only, visit)?;
-            return Ok(flow);
+        if change.is_none() && is_exact(&path, law) {
+            let visit = |state| moments.push(state);
+            let (release, samples) = (self.release(), self.samples());
+            sample_exact(&path, law, release, samples, speed_only, visit)?;
+        } else {
+            K::moved(self, law, change, &mut moments)?;
         }
-        sample(
-            &self.path(),
-            friction.block(),
-            self.release(),
-            self.samples(),
-            speed_only,
-            |state| flow.push(state, speed_only),
-        )?;
-        Ok(flow)
+        Ok(Flow { event: self, friction, moments })
     }
 }
 
-impl<'a, K: Kind, L: Friction<K>> Flow<'a, K, L> {
-    pub(super) fn new(
-        event: &'a Event,
-        friction: &'a Declared<'_, K, L>,
-    ) -> Self {
-        let context = friction.context();
-        Self {
-            event,
-            friction,
-            speed: context.buffer(),
-            distance: context.buffer(),
-            acceleration: context.buffer(),
-        }
-    }
-
-    #[inline(always)]
-    pub(super) fn push(&mut self, state: State<K>, speed_only: bool) {
-        self.speed.push(state.speed);
-        if !speed_only {
-            self.distance.push(state.distance);
-            self.acceleration.push(state.acceleration);
-        }
-    }
-
+impl<K: MotionKind, L: Friction<K>> Flow<'_, K, L> {
     /// The speed as the event's velocity series records it.
     pub fn velocity(&self) -> Recorded<'_, K> {
         self.recorded(Quantity::Velocity)
@@ -114,9 +81,9 @@ impl<'a, K: Kind, L: Friction<K>> Flow<'a, K, L> {
             quantity,
             start: self.event.start(),
             samples: self.event.samples(),
-            speed: &self.speed,
-            distance: &self.distance,
-            acceleration: &self.acceleration,
+            speed: &self.moments.speed,
+            distance: &self.moments.distance,
+            acceleration: &self.moments.acceleration,
         }
     }
 
@@ -127,7 +94,8 @@ impl<'a, K: Kind, L: Friction<K>> Flow<'a, K, L> {
     /// [`Stop::Reject`] where the law has no flow with these values.
     pub fn rest(&self) -> Result<Option<Rest<K>>, Stop> {
         self.friction.context().count_slide();
-        self.event.rest(self.friction.block(), self.friction.change())
+        let law = self.friction.block();
+        K::rest(self.event, law, self.friction.change())
     }
 
     /// The distance along the slope from the release to where the mass comes

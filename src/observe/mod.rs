@@ -7,6 +7,7 @@
 mod event;
 mod extent;
 mod flow;
+mod moments;
 mod motion;
 mod scatter;
 mod series;
@@ -15,5 +16,6 @@ mod thin;
 pub use crate::mechanism::Extent;
 pub use event::{Event, EventBuilder};
 pub use flow::{Flow, Prediction, Recorded};
+pub use moments::{Moments, MotionKind};
 pub use series::{Quantity, Series};
 pub use thin::{Thinned, Thinning};

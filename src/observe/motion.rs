@@ -3,18 +3,13 @@
 use std::borrow::Cow;
 
 use super::event::Event;
-use crate::declared::Declared;
 use crate::error::Stop;
 use crate::mechanism::Change;
 use crate::physics::forces::STEPS;
 use crate::physics::{
-    Forces, Friction, Release, Rest, State, rest, rest_changed, sample,
-    sample_changed, speeds,
+    Forces, Friction, Release, State, sample, sample_changed, speeds,
 };
 use crate::scalar::{Kind, Plain, Real};
-
-/// A window \[s\] so short that a mean over it is the value itself.
-const NO_WINDOW: f64 = 1e-6;
 
 impl Event {
     /// The speeds \[m/s\] at increasing times \[s\] since the release under
@@ -51,38 +46,6 @@ impl Event {
         speeds(&self.path(), laws, self.release(), times)
     }
 
-    /// The motion under a change, as the recording's clock shows it, with
-    /// the speed as the mean over the change's window.
-    pub(super) fn slide_changed<K: Kind, L: Friction<K>>(
-        &self,
-        friction: &Declared<'_, K, L>,
-        change: &Change<K>,
-        speed_only: bool,
-        mut visit: impl FnMut(State<K>),
-    ) -> Result<(), Stop> {
-        let law = friction.block();
-        let moments = || self.samples().iter().map(|&t| t - change.clock);
-        if change.window <= NO_WINDOW {
-            return self.changed(law, change, moments(), speed_only, visit);
-        }
-        let since = moments().map(|t| (t - change.window).max(0.0));
-        let mut begins = friction.context().buffer();
-        let push = |s: State<K>| begins.push(s.distance);
-        self.changed(law, change, since, false, push)?;
-        let mut windows = moments().zip(begins.iter());
-        self.changed(law, change, moments(), false, |state| {
-            let Some((time, &begin)) = windows.next() else { return };
-            let cut = change.window_begins && time < change.window;
-            let lasts = if cut { time } else { change.window };
-            let speed = if lasts > NO_WINDOW {
-                (state.distance - begin) / lasts
-            } else {
-                state.speed
-            };
-            visit(State { speed, ..state });
-        })
-    }
-
     /// The motion at increasing times of the recording's clock \[s\], under
     /// a change of it.
     pub(crate) fn motion<K: Kind, L: Friction<K>>(
@@ -101,9 +64,9 @@ impl Event {
     }
 
     /// The motion under a change at increasing times since the release.
-    fn changed<K: Kind, L: Friction<K>>(
+    pub(super) fn changed<K: Kind>(
         &self,
-        law: &L,
+        law: &dyn Friction<K>,
         change: &Change<K>,
         times: impl Iterator<Item = Real<K>>,
         speed_only: bool,
@@ -112,13 +75,13 @@ impl Event {
         let release = self.release_changed(change);
         let forces = self.forces(change);
         let path = self.path();
-        sample_changed(&path, law, &forces, release, times, speed_only, visit)
+        sample_changed(&path, &law, &forces, release, times, speed_only, visit)
     }
 
-    /// The forces of a change, by the event's own clock. Where none is added, nothing says how often a
-    /// law that varies with the speed has to be looked at: as often as under
-    /// a mechanism's force.
-    fn forces<'c, K: Kind>(
+    /// The forces of a change, by the event's own clock. Where none is added,
+    /// nothing says how often a law that varies with the speed has to be looked
+    /// at: as often as under a mechanism's force.
+    pub(super) fn forces<'c, K: Kind>(
         &self,
         change: &'c Change<K>,
     ) -> Cow<'c, Forces<K>> {
@@ -134,29 +97,14 @@ impl Event {
     }
 
     /// The release under a change.
-    fn release_changed<K: Kind>(&self, change: &Change<K>) -> Release<K> {
+    pub(super) fn release_changed<K: Kind>(
+        &self,
+        change: &Change<K>,
+    ) -> Release<K> {
         let Release { distance, speed } = self.release::<K>();
         Release {
             distance: distance + change.start_place,
             speed: speed + change.start_speed,
-        }
-    }
-
-    /// Where and when the mass comes to rest under a friction law and a
-    /// change; `None` if it never does.
-    pub(crate) fn rest<K: Kind, L: Friction<K>>(
-        &self,
-        law: &L,
-        change: Option<&Change<K>>,
-    ) -> Result<Option<Rest<K>>, Stop> {
-        match change {
-            Some(change) if change.moves() => rest_changed(
-                &self.path(),
-                law,
-                &self.forces(change),
-                self.release_changed(change),
-            ),
-            _ => rest(&self.path(), law, self.release()),
         }
     }
 }

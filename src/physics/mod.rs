@@ -31,6 +31,7 @@ pub use forces::Forces;
 pub use friction::{Friction, Rate, Site, Sum, Varies};
 pub use lanes::speeds;
 pub use motion::{Path, Release, Rest, State};
+pub(crate) use sample::{is_exact, sample_exact};
 pub use sample::{rest, sample};
 pub use track::Track;
 

@@ -28,13 +28,37 @@ pub fn sample<K: Kind, L: Friction<K>>(
         let visit = &mut visit;
         return sample_uneven(path, law, release, times, speed_only, visit);
     }
-    if law.varies() == Varies::WithSpeed {
-        let walker = SpeedWalker::new(path, law, release)?;
-        visit_times(walker, times, speed_only, visit)
-    } else {
-        let walker = ExactWalker::new(path, law, release)?;
-        visit_times(walker, times, speed_only, visit)
+    if is_exact(path, law) {
+        return sample_exact(path, law, release, times, speed_only, visit);
     }
+    let walker = SpeedWalker::new(path, law, release)?;
+    visit_times(walker, times, speed_only, visit)
+}
+
+/// Whether a law is of the exact family, on a path of one depth.
+#[inline]
+pub(crate) fn is_exact<K: Kind, L: Friction<K>>(
+    path: &Path<'_>,
+    law: &L,
+) -> bool {
+    path.is_even() && law.varies() != Varies::WithSpeed
+}
+
+/// The motion of [`sample`] where [`is_exact`] says so.
+///
+/// # Errors
+/// As [`sample`].
+#[inline]
+pub(crate) fn sample_exact<K: Kind, L: Friction<K>>(
+    path: &Path<'_>,
+    law: &L,
+    release: Release<K>,
+    times: &[f64],
+    speed_only: bool,
+    visit: impl FnMut(State<K>),
+) -> Result<(), Stop> {
+    let walker = ExactWalker::new(path, law, release)?;
+    visit_times(walker, times, speed_only, visit)
 }
 
 /// The same where the depth changes. Its own code, and not compiled for every
