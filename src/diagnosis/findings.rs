@@ -240,6 +240,12 @@ impl ParameterSummary {
         }
     }
 
+    /// The median where the 90 % interval has one sign; else NaN, since nothing
+    /// is told of a sign then.
+    pub(crate) fn signed(&self) -> f64 {
+        if self.q05 * self.q95 > 0.0 { self.q50 } else { f64::NAN }
+    }
+
     /// The same under its own name, where it is of a mechanism of this name.
     pub(crate) fn named_within(self, mechanism: &str) -> Self {
         let name = self.within(mechanism).unwrap_or(&self.name).to_owned();

@@ -6,8 +6,8 @@ use std::ops::Range;
 use crate::diagnosis::compare::checks::rows_of;
 use crate::diagnosis::decide::added::Added;
 use crate::diagnosis::evidence::fit::Fit;
-use crate::diagnosis::findings::{Judged, Rival};
-use crate::draws::median;
+use crate::diagnosis::findings::{Judged, ParameterSummary, Rival};
+use crate::draws::summarise;
 use crate::mechanism::{Family, Mechanism};
 
 /// What was chosen to be added to the model.
@@ -53,10 +53,10 @@ impl Chosen {
         judged: &mut [Judged],
         all: &[Box<dyn Mechanism>],
     ) {
-        let rows = rows_of(&self.fit.draws);
+        let columns = summarise(&self.fit.draws);
         for (mechanism, own) in self.columns(all) {
-            let amplitudes = rows.iter().map(|row| row[own.start]);
-            let amplitude = median(&amplitudes.collect::<Vec<_>>());
+            let Some(column) = columns.get(own.start) else { continue };
+            let amplitude = ParameterSummary::of(column).signed();
             let named = judged.iter_mut().find(|m| m.name == mechanism.name());
             if let Some(named) = named {
                 named.noun = mechanism.noun(amplitude);

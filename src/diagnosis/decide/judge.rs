@@ -195,7 +195,7 @@ fn judged(
         .take(fit.added)
         .map(|column| ParameterSummary::of(column).named_within(name))
         .collect();
-    let amplitude = parameters.first().map_or(f64::NAN, |p| p.q50);
+    let amplitude = parameters.first().map_or(f64::NAN, |p| p.signed());
     Judged {
         name: name.into(),
         noun: mechanism.noun(amplitude),

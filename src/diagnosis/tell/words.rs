@@ -5,7 +5,7 @@ use crate::diagnosis::tell::moment::place_or_moment;
 use crate::diagnosis::tell::noise::{is_other, noise};
 use crate::diagnosis::tell::phrases::{
     all_called, amounts, called, capital, event, friction, interval,
-    is_corrected, judged, log10, model, own_name, probability, range,
+    is_corrected, joined, judged, log10, model, own_name, probability, range,
     recorded_in, stretch, with_unit,
 };
 use crate::diagnosis::tell::signs::either_sign;
@@ -226,17 +226,18 @@ fn explanation(d: &Diagnosis) -> String {
         _ => format!(
             "{what} explain this{}; alone, {}.",
             instead(d),
-            found
-                .iter()
-                .map(|m| format!(
-                    "{} has the probability {}",
-                    m.name,
-                    probability(m.probability)
-                ))
-                .collect::<Vec<_>>()
-                .join(" and ")
+            probabilities(&found)
         ),
     }
+}
+
+/// `friction-step has the probability 0.60, surge 0.02 and cohesion < 0.001`.
+fn probabilities(found: &[&Judged]) -> String {
+    let each = found.iter().enumerate().map(|(i, m)| {
+        let has = if i == 0 { "has the probability " } else { "" };
+        format!("{} {has}{}", m.name, probability(m.probability))
+    });
+    joined(&each.collect::<Vec<_>>(), "and")
 }
 
 /// What would do nearly as well as one of several selected.

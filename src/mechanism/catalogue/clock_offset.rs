@@ -1,5 +1,6 @@
 //! A recording whose clock is ahead or behind.
 
+use super::or;
 use crate::mechanism::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
@@ -17,8 +18,15 @@ impl Candidate for ClockOffset {
         Family::Measurement
     }
 
-    fn noun(&self, _amplitude: f64) -> Noun {
-        Noun::one("a clock that is off")
+    fn noun(&self, amplitude: f64) -> Noun {
+        Noun::one(or(
+            amplitude,
+            [
+                "a clock that is ahead",
+                "a clock that is behind",
+                "a clock that is off",
+            ],
+        ))
     }
 
     fn says(&self) -> &'static str {

@@ -29,8 +29,8 @@ impl Candidate for DepthChange {
         Noun::one(or(
             amplitude,
             [
-                "a flow that gets shallower, which adds to its drag",
-                "a flow that gets deeper, which takes from its drag",
+                "a flow that gets shallower (more drag)",
+                "a flow that gets deeper (less drag)",
                 "a flow whose depth changes",
             ],
         ))

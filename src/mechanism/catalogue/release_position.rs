@@ -1,6 +1,6 @@
 //! A release at another place than the event says.
 
-use super::DISTANCE;
+use super::{DISTANCE, or};
 use crate::mechanism::Extent;
 use crate::mechanism::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
@@ -22,8 +22,15 @@ impl Candidate for ReleasePosition {
         Family::Start
     }
 
-    fn noun(&self, _amplitude: f64) -> Noun {
-        Noun::one("a release at another place")
+    fn noun(&self, amplitude: f64) -> Noun {
+        Noun::one(or(
+            amplitude,
+            [
+                "a release farther down",
+                "a release farther up",
+                "a release at another place",
+            ],
+        ))
     }
 
     fn says(&self) -> &'static str {

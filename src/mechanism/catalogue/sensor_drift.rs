@@ -1,6 +1,6 @@
 //! A sensor that drifts with time.
 
-use super::DRIFT;
+use super::{DRIFT, or};
 use crate::mechanism::Extent;
 use crate::mechanism::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
@@ -22,8 +22,15 @@ impl Candidate for SensorDrift {
         Family::Measurement
     }
 
-    fn noun(&self, _amplitude: f64) -> Noun {
-        Noun::one("a sensor that drifts")
+    fn noun(&self, amplitude: f64) -> Noun {
+        Noun::one(or(
+            amplitude,
+            [
+                "a sensor that drifts up",
+                "a sensor that drifts down",
+                "a sensor that drifts",
+            ],
+        ))
     }
 
     fn says(&self) -> &'static str {

@@ -1,5 +1,6 @@
 //! A sensor whose scale is off.
 
+use super::or;
 use crate::mechanism::{Candidate, Change, Family, Missing, Noun, Unknown};
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
@@ -17,8 +18,15 @@ impl Candidate for VelocityScale {
         Family::Measurement
     }
 
-    fn noun(&self, _amplitude: f64) -> Noun {
-        Noun::one("a reading off by a constant factor")
+    fn noun(&self, amplitude: f64) -> Noun {
+        Noun::many(or(
+            amplitude,
+            [
+                "readings too large by a constant factor",
+                "readings too small by a constant factor",
+                "readings off by a constant factor",
+            ],
+        ))
     }
 
     fn says(&self) -> &'static str {
