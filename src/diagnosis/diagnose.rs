@@ -9,8 +9,8 @@ use crate::diagnosis::compare::checks::{
 use crate::diagnosis::decide::choose::{Choice, Explained};
 use crate::diagnosis::decide::chosen::Chosen;
 use crate::diagnosis::decide::judge::{
-    Beforehand, Seen, check_odds, group, judge_all, log_of_noises, separating,
-    verdict,
+    Beforehand, Seen, check_odds, group, judge_all, log_of_noises,
+    next_recording, verdict,
 };
 use crate::diagnosis::decide::noise::{judged_noises, taken};
 use crate::diagnosis::evidence::attribute::Care;
@@ -247,7 +247,7 @@ impl<P: Program> Subject<'_, P> {
             quick: options.quick,
             seed: options.seed,
             rivals,
-            separating: separating(&group, judged),
+            separating: next_recording(*verdict, &group, judged),
             group,
             mechanisms: judged.clone(),
             withheld: decision.withheld.clone(),
@@ -418,12 +418,16 @@ impl<P: Program> Subject<'_, P> {
         options: &Options,
         seed: Seed,
     ) -> Result<LawParameters> {
+        // A model without friction has none.
+        if options.law.as_ref().is_some_and(Vec::is_empty) {
+            return Ok(LawParameters::default());
+        }
         let is_of_law = |p: &ParameterSummary| {
             // "mu" of "mu", of "mu[1]", and of an event's "C10.mu".
             let own = p.name.split('[').next().unwrap_or_default();
             let bare = own.rsplit('.').next().unwrap_or_default();
             let known = |law: &String| law == own || law == bare;
-            options.law.is_empty() || options.law.iter().any(known)
+            options.law.as_ref().is_none_or(|law| law.iter().any(known))
         };
         let of = |draws: &Draws| -> Vec<ParameterSummary> {
             let all = summarise(draws);

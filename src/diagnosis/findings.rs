@@ -47,7 +47,8 @@ pub struct Diagnosis {
     pub rivals: Vec<Rival>,
     /// What adding it brings.
     pub improvement: Improvement,
-    /// The recording that would tell the group apart, in a sentence.
+    /// The recording that would tell most beside this one, in a sentence: what
+    /// tells the group apart or, of one name, whether it is that.
     pub separating: Option<String>,
     /// The corrected model's parameters, the mechanisms' first.
     pub parameters: Vec<ParameterSummary>,

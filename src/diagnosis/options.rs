@@ -36,9 +36,9 @@ pub struct Options {
     pub blocks: Vec<String>,
     /// The mechanisms that the model has already.
     pub mechanisms: Vec<Arc<dyn Mechanism>>,
-    /// The friction law's parameters, by their names; empty for all that the
-    /// model has of its own.
-    pub law: Vec<String>,
+    /// The friction law's parameters, by their names: none of a model without
+    /// friction. Where they are not known, all that the model has of its own.
+    pub law: Option<Vec<String>>,
     /// The priors of the model's parameters, by their names.
     pub priors: Vec<(String, String)>,
     /// Friction and errors as `model!` declares them, where that is known.
@@ -66,7 +66,7 @@ impl Options {
             friction: model.friction(),
             noise: model.noise(),
             mechanisms: model.mechanisms().cloned().collect(),
-            law: model.law_names(),
+            law: Some(model.law_names()),
             priors: priors(model, ""),
             declarations: declarations(model),
             ..Self::default()
@@ -89,9 +89,10 @@ impl Options {
                     text.push_str(&own);
                 }
             }
+            let law = all.law.get_or_insert_default();
             for name in event.law_names() {
-                if !all.law.contains(&name) {
-                    all.law.push(name);
+                if !law.contains(&name) {
+                    law.push(name);
                 }
             }
             for mechanism in event.mechanisms() {

@@ -361,11 +361,38 @@ pub(crate) fn group(all: &[Judged]) -> Vec<String> {
     near.into_iter().take(3).map(|m| m.name.clone()).collect()
 }
 
-/// The recording that would tell the members of a group apart.
-pub(crate) fn separating(
+/// The recording that would tell most beside this one: what tells the members
+/// of a group apart or, of one member, whether it is that.
+pub(crate) fn next_recording(
+    verdict: Verdict,
     group: &[String],
     judged: &[Judged],
 ) -> Option<String> {
+    let words = match verdict {
+        Verdict::Adequate => return separating(group, judged),
+        _ if group.len() > 1 => return separating(group, judged),
+        Verdict::MissingPhysics => {
+            "A recording from another start over the same ground would show \
+             whether it holds there too."
+        }
+        Verdict::Unexplained => {
+            "A recording from another start over the same ground would show \
+             whether that force belongs to a place, a moment or a speed."
+        }
+        Verdict::Measurement => {
+            "A second recording with another sensor, or of a mass released \
+             at a known place and moment, would show whether it is that."
+        }
+        Verdict::Errors => {
+            "A second recording by the same sensor would show whether its \
+             errors are always such ones."
+        }
+    };
+    Some(words.to_owned())
+}
+
+/// The recording that would tell the members of a group apart.
+fn separating(group: &[String], judged: &[Judged]) -> Option<String> {
     if group.len() < 2 {
         return None;
     }

@@ -519,7 +519,8 @@ fn nearest(d: &Diagnosis) -> Option<String> {
 
 fn silence() -> String {
     "This says that the recording does not show anything more, not that \
-     nothing more is there: an effect too small for this noise stays unseen."
+     nothing more is there: an effect too small for this noise stays unseen. \
+     A second recording, or one with smaller errors, would show more."
         .to_owned()
 }
 
