@@ -24,7 +24,7 @@ impl Event {
     ///
     /// ```compile_fail,E0308
     /// use couloir::prelude::*;
-    /// fn undeclared<K: Kind>(event: &Event, mu: Real<K>) -> Outcome {
+    /// fn undeclared<K: Number>(event: &Event, mu: Real<K>) -> Outcome {
     ///     let law = Coulomb { mu };
     ///     event.slide(&law)?; // expected `&Declared<..>`
     ///     Ok(())
