@@ -454,3 +454,21 @@ pub struct Pictured {
     /// coordinates: x, z of points along it.
     pub marked: Vec<(f64, f64)>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sign_is_told_where_the_interval_has_one() {
+        let of = |q05: f64, q50: f64, q95: f64| {
+            let (name, unit, mean, sd) =
+                (String::new(), String::new(), q50, 1.0);
+            ParameterSummary { name, unit, mean, sd, q05, q50, q95 }.signed()
+        };
+        assert_eq!(of(1.0, 2.0, 3.0), 2.0);
+        assert_eq!(of(-3.0, -2.0, -1.0), -2.0);
+        assert!(of(-0.1, 2.0, 3.0).is_nan());
+        assert!(of(0.0, 2.0, 3.0).is_nan());
+    }
+}

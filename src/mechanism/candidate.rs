@@ -11,7 +11,7 @@ use std::ops::Range;
 use super::Change;
 use crate::physics::forces::Axis;
 use crate::prior::AnyPrior;
-use crate::scalar::{Grad, Kind, Plain, Real, Reverse};
+use crate::scalar::{Grad, Kind, Plain, Real, Reverse, of_each_kind};
 
 /// What sort of thing a mechanism changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -308,7 +308,7 @@ macro_rules! change_kind {
         })*
     };
 }
-change_kind!(Plain, Grad<2>, Grad<4>, Grad<8>, Grad<16>, Reverse);
+of_each_kind!(change_kind);
 
 #[cfg(test)]
 mod tests {

@@ -8,7 +8,7 @@ use crate::mechanism::ChangeKind;
 use crate::noise::NoiseKind;
 use crate::observe::MotionKind;
 use crate::physics::friction::LawKind;
-use crate::scalar::{Grad, Kind, Plain, Reverse};
+use crate::scalar::{Kind, of_each_kind};
 
 /// A kind of number with a home for its buffers on every thread.
 pub trait Number:
@@ -34,4 +34,4 @@ macro_rules! number {
         })*
     };
 }
-number!(Plain, Grad<2>, Grad<4>, Grad<8>, Grad<16>, Reverse);
+of_each_kind!(number);

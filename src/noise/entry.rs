@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use super::{Noise, Part};
 use crate::block::Field;
 use crate::error::Stop;
-use crate::scalar::{Grad, Kind, Plain, Real, Reverse};
+use crate::scalar::{Grad, Kind, Plain, Real, Reverse, of_each_kind};
 
 /// Builds a noise of number kind `K` from the values of its parameters.
 pub trait NoiseFor<K: Kind> {
@@ -76,4 +76,4 @@ macro_rules! noise_kind {
         })*
     };
 }
-noise_kind!(Plain, Grad<2>, Grad<4>, Grad<8>, Grad<16>, Reverse);
+of_each_kind!(noise_kind);

@@ -6,7 +6,7 @@ use crate::context::{Buffer, Context};
 use crate::error::Stop;
 use crate::mechanism::Change;
 use crate::physics::{Friction, Rest, State, rest, rest_changed, sample};
-use crate::scalar::{Grad, Kind, Plain, Reverse};
+use crate::scalar::{Kind, of_each_kind};
 
 /// A window \[s\] so short that a mean over it is the value itself.
 const NO_WINDOW: f64 = 1e-6;
@@ -41,6 +41,8 @@ pub trait MotionKind: Kind {
     ) -> Result<Option<Rest<Self>>, Stop>;
 }
 
+// Written for each kind: a function that the trait had itself would be compiled
+// where it is called.
 macro_rules! motion_kind {
     ($($kind:ty),*) => {
         $(impl MotionKind for $kind {
@@ -63,7 +65,7 @@ macro_rules! motion_kind {
         })*
     };
 }
-motion_kind!(Plain, Grad<2>, Grad<4>, Grad<8>, Grad<16>, Reverse);
+of_each_kind!(motion_kind);
 
 /// The motion at the moments that were asked for.
 #[derive(Debug)]

@@ -47,6 +47,22 @@ pub trait Kind: Copy + Debug + Default + Send + Sync + 'static {
     ) -> Self::Repr;
 }
 
+/// Writes something, by a macro that takes kinds, for each that models are
+/// evaluated with: plain numbers, four widths of gradient, and the tape.
+macro_rules! of_each_kind {
+    ($implement:ident) => {
+        $implement!(
+            $crate::scalar::Plain,
+            $crate::scalar::Grad<2>,
+            $crate::scalar::Grad<4>,
+            $crate::scalar::Grad<8>,
+            $crate::scalar::Grad<16>,
+            $crate::scalar::Reverse
+        );
+    };
+}
+pub(crate) use of_each_kind;
+
 /// Kinds whose numbers carry their derivatives with them, so that these can
 /// be looked at on the way.
 pub trait Forward: Kind {}

@@ -27,6 +27,7 @@ use std::ops::{
 
 use num_traits::{NumAssignOps, NumOps, One, Zero};
 
+pub(crate) use kind::of_each_kind;
 pub use kind::{Forward, Grad, Kind, Plain, fused};
 pub(crate) use tape::Recording;
 pub use tape::Reverse;

@@ -368,9 +368,11 @@ pub(crate) fn next_recording(
     group: &[String],
     judged: &[Judged],
 ) -> Option<String> {
+    if group.len() > 1 {
+        return Some(separating(group, judged));
+    }
     let words = match verdict {
-        Verdict::Adequate => return separating(group, judged),
-        _ if group.len() > 1 => return separating(group, judged),
+        Verdict::Adequate => return None,
         Verdict::MissingPhysics => {
             "A recording from another start over the same ground would show \
              whether it holds there too."
@@ -392,10 +394,7 @@ pub(crate) fn next_recording(
 }
 
 /// The recording that would tell the members of a group apart.
-fn separating(group: &[String], judged: &[Judged]) -> Option<String> {
-    if group.len() < 2 {
-        return None;
-    }
+fn separating(group: &[String], judged: &[Judged]) -> String {
     let of = |name: &String| judged.iter().find(|m| m.name == *name);
     let members: Vec<&Judged> = group.iter().filter_map(of).collect();
     let has = |verdict: Verdict| {
@@ -403,24 +402,44 @@ fn separating(group: &[String], judged: &[Judged]) -> Option<String> {
     };
     let along =
         |axis: Axis| members.iter().any(|m| m.coordinate == Some(axis));
-    Some(if has(Verdict::Measurement) {
+    let words = if has(Verdict::Measurement) {
         "A second recording with another sensor, or of a mass released at a \
          known place and moment, would tell them apart."
-            .into()
     } else if along(Axis::Time) && along(Axis::Place) {
         "A recording from another start would tell them apart: what belongs \
          to a place stays there, what belongs to a moment moves along."
-            .into()
     } else {
         "A recording at other speeds over the same ground, from a higher \
          start or on another slope, would tell them apart."
-            .into()
-    })
+    };
+    words.to_owned()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_verdict_but_adequate_says_what_to_record_next() {
+        let judged = Judged { name: "surge".into(), ..Judged::default() };
+        let next = |verdict, group: &[&str]| {
+            let group: Vec<String> =
+                group.iter().map(|&name| name.into()).collect();
+            next_recording(verdict, &group, std::slice::from_ref(&judged))
+        };
+        assert_eq!(next(Verdict::Adequate, &["none"]), None);
+        for verdict in [
+            Verdict::MissingPhysics,
+            Verdict::Unexplained,
+            Verdict::Measurement,
+            Verdict::Errors,
+        ] {
+            let alone = next(verdict, &["surge"]).unwrap();
+            assert!(alone.contains("would show whether"), "{alone}");
+            let two = next(verdict, &["surge", "cohesion"]).unwrap();
+            assert!(two.contains("tell them apart"), "{two}");
+        }
+    }
 
     #[test]
     fn a_further_term_costs_what_the_odds_say() {

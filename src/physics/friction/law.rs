@@ -9,7 +9,7 @@ use std::fmt::Debug;
 use super::{Friction, Rate, Site, Varies};
 use crate::block::{Field, Named};
 use crate::error::{Error, Result};
-use crate::scalar::{Grad, Kind, Plain, Real, Reverse};
+use crate::scalar::{Grad, Kind, Plain, Real, Reverse, of_each_kind};
 use crate::spelling::{nearest, quoted};
 
 /// A law whose parameters are given as a slice.
@@ -103,7 +103,7 @@ macro_rules! law_kind {
         })*
     };
 }
-law_kind!(Plain, Grad<2>, Grad<4>, Grad<8>, Grad<16>, Reverse);
+of_each_kind!(law_kind);
 
 /// The laws that an event file may name: the built-in ones and a user's own.
 #[derive(Debug, Clone)]
