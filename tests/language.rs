@@ -1,5 +1,5 @@
-//! The language: what `model!` accepts, what it makes of it, and the words
-//! with which it refuses the rest.
+//! The language: what `model!` accepts, and what it makes of it. What it
+//! refuses is tested with the macro, in macros/tests.
 
 mod accepted;
 
@@ -18,16 +18,6 @@ use couloir::{
     Declared, Event, Label, Model, Number, Outcome, Program, Real, Run, Seed,
     Series, Stop, model,
 };
-
-/// After a change of words, write them anew with
-/// `TRYBUILD=overwrite cargo test --test language` and read the difference.
-// With other features the compiler writes `Real<K>` by another path.
-#[cfg_attr(not(feature = "nuts"), ignore = "words with all features")]
-#[test]
-fn mistakes_are_refused_in_plain_words() {
-    let cases = trybuild::TestCases::new();
-    cases.compile_fail("tests/ui/*.rs");
-}
 
 fn event(velocity: &[f64]) -> Event {
     let build = || {

@@ -95,9 +95,9 @@ fn located(one: &Under<'_>, seed: Seed) -> Result<Located> {
     let none = one.none.as_ref();
     let none =
         none.ok_or_else(|| Error::inference("a force beside no fit"))?;
-    let extent = one.program.event().extent();
+    let extent = one.program().event().extent();
     let forces =
-        locate_all(one.program, &extent, &Axis::ALL, none, seed.child(0))?;
+        locate_all(one.program(), &extent, &Axis::ALL, none, seed.child(0))?;
     let gains = forces.iter().map(|force| force.log_bayes_factor);
     let gain = log_sum_exp(gains) - (forces.len() as f64).ln();
     let more = |a: &&FreeForce, b: &&FreeForce| {
@@ -105,7 +105,7 @@ fn located(one: &Under<'_>, seed: Seed) -> Result<Located> {
     };
     let likeliest = forces.iter().max_by(more);
     Ok(Located {
-        draws: own_draws(one.program, &extent, &forces, seed.child(1))?,
+        draws: own_draws(one.program(), &extent, &forces, seed.child(1))?,
         logs: [none.log_evidence + gain, none.log_evidence],
         differs: likeliest.is_some_and(|force| !force.runs().is_empty()),
     })

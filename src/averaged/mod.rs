@@ -87,7 +87,7 @@ pub fn calibrate_open(
     // The survey that a diagnosis of this seed makes.
     let survey = Seed::new(seed).child(1);
     let found = weighed(model, &named, &extent, survey)?;
-    let under = under_each(&found, backend, seed, progress)?;
+    let under = under_each(model, &found, backend, seed, progress)?;
     let mut found = concluded(model, under, open, seed, progress)?;
     found.report.seconds = begun.elapsed().as_secs_f64();
     Ok(found)
@@ -105,7 +105,7 @@ fn concluded(
     if open.rest && !open.noise {
         let backend = LaplaceMixture::default();
         for one in &mut under {
-            one.none = Some(fit(one.program, &[], &backend, seed.child(0))?);
+            one.none = Some(fit(one.program(), &[], &backend, seed.child(0))?);
         }
     }
     let forced = match open.rest {

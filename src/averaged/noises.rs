@@ -8,7 +8,7 @@ use crate::diagnosis::{Fit, Noises, Noisy};
 use crate::draws::{log_sum_exp, summarise};
 use crate::error::{Error, Result};
 use crate::infer::{Backend, Progress};
-use crate::model::Assembled;
+use crate::model::{Assembled, Program};
 use crate::report::{
     CalibrationReport, EvidenceReport, NoiseReport, ParameterReport,
 };
@@ -18,7 +18,9 @@ const LEAST: f64 = 1e-3;
 
 /// A model calibrated under one noise.
 pub(super) struct Under<'a> {
-    pub(super) program: &'a Assembled,
+    named: &'a Assembled,
+    /// The model with another noise than the one that it names.
+    other: Option<Assembled>,
     /// Its fit as a diagnosis makes it, where that is known.
     pub(super) none: Option<Fit>,
     /// Its probability among those that were calibrated.
@@ -28,25 +30,40 @@ pub(super) struct Under<'a> {
     all: Vec<NoiseReport>,
 }
 
+impl Under<'_> {
+    pub(super) fn program(&self) -> &Assembled {
+        self.other.as_ref().unwrap_or(self.named)
+    }
+}
+
 /// Under the noise that the model names.
 pub(super) fn under_one<'a>(
-    program: &'a Assembled,
+    named: &'a Assembled,
     backend: &dyn Backend,
     seed: u64,
     progress: &dyn Progress,
 ) -> Result<Under<'a>> {
-    let found = calibrate(program, backend, seed, progress)?;
-    let all = Vec::new();
-    Ok(Under { program, none: None, probability: 1.0, found, all })
+    let found = calibrate(named, backend, seed, progress)?;
+    let (other, all) = (None, Vec::new());
+    Ok(Under { named, other, none: None, probability: 1.0, found, all })
 }
 
 /// A noise that was kept, with what a calibration under it found.
-struct Kept<'a> {
-    noisy: &'a Noisy<'a, Assembled>,
+struct Kept<'n> {
+    noisy: &'n Noisy<'n>,
+    other: Option<Assembled>,
     found: Option<Calibration>,
 }
 
-impl Kept<'_> {
+impl<'n> Kept<'n> {
+    fn of(noisy: &'n Noisy<'n>, named: &Assembled) -> Result<Self> {
+        let other = match noisy.is_named() {
+            true => None,
+            false => named.with_noise(&noisy.name)?,
+        };
+        Ok(Self { noisy, other, found: None })
+    }
+
     /// ln of the evidence: that of the calibration, which has more draws, where
     /// there is one.
     fn log(&self) -> f64 {
@@ -63,18 +80,18 @@ impl Kept<'_> {
 /// # Errors
 /// As [`calibrate`].
 pub(super) fn under_each<'a>(
-    noises: &'a Noises<'a, Assembled>,
+    named: &'a Assembled,
+    noises: &Noises<'_>,
     backend: &dyn Backend,
     seed: u64,
     progress: &dyn Progress,
 ) -> Result<Vec<Under<'a>>> {
-    let kept = noises.kept.iter();
-    let mut kept: Vec<Kept<'a>> =
-        kept.map(|noisy| Kept { noisy, found: None }).collect();
+    let kept = noises.kept.iter().map(|noisy| Kept::of(noisy, named));
+    let mut kept = kept.collect::<Result<Vec<_>>>()?;
     let most = kept.iter().map(Kept::log).fold(f64::NEG_INFINITY, f64::max);
     for one in &mut kept {
         if one.log() > most + LEAST.ln() {
-            let program = one.noisy.program();
+            let program = one.other.as_ref().unwrap_or(named);
             let found = calibrate(program, backend, seed, progress)?;
             one.found = Some(found);
         }
@@ -86,7 +103,8 @@ pub(super) fn under_each<'a>(
     let under = kept.into_iter().filter_map(|one| {
         let probability = (one.log() - total).exp();
         Some(Under {
-            program: one.noisy.program(),
+            named,
+            other: one.other,
             none: Some(one.noisy.none.clone()),
             probability,
             found: one.found?,
@@ -98,10 +116,7 @@ pub(super) fn under_each<'a>(
 
 /// What the evidence says of the noises that are kept, each as probable
 /// beforehand.
-fn judged(
-    kept: &[Kept<'_>],
-    dropped: Option<&Noisy<'_, Assembled>>,
-) -> Vec<NoiseReport> {
+fn judged(kept: &[Kept<'_>], dropped: Option<&Noisy<'_>>) -> Vec<NoiseReport> {
     let total = log_sum_exp(kept.iter().map(Kept::log));
     let named = kept.iter().find(|one| one.noisy.is_named()).map(Kept::log);
     let named = named.or(dropped.map(|noisy| noisy.none.log_evidence));

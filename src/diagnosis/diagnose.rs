@@ -36,7 +36,7 @@ use crate::error::{Error, Result};
 use crate::infer::Progress;
 use crate::mechanism::Mechanism;
 use crate::mechanism::catalogue::is_held;
-use crate::model::{Member, Program, Together, declared_blocks};
+use crate::model::{AnyProgram, Member, Together, declared_blocks};
 use crate::observe::{Event, Extent};
 use crate::physics::forces::Axis;
 use crate::seed::Seed;
@@ -47,8 +47,8 @@ use crate::seed::Seed;
 /// An improper prior, odds of what is not weighed, a mechanism of one's own
 /// that cannot be told from others, an event without a recording, or a model
 /// that fails.
-pub fn diagnose<P: Program>(
-    program: &P,
+pub fn diagnose(
+    program: &dyn AnyProgram,
     event: &Event,
     options: &Options,
     progress: &dyn Progress,
@@ -83,8 +83,8 @@ pub fn diagnose_together<M: Member>(
 }
 
 /// A model with its events and what may be missing from it.
-struct Subject<'a, P> {
-    program: &'a P,
+struct Subject<'a> {
+    program: &'a dyn AnyProgram,
     events: Vec<&'a Event>,
     extent: Extent,
     all: Vec<Box<dyn Mechanism>>,
@@ -119,11 +119,7 @@ impl Decision {
 
     /// The noise of the corrected model: the named one where nothing is wrong,
     /// or where another makes the fit worse.
-    fn noise<P: Program>(
-        &self,
-        row: &Row<'_, P>,
-        options: &Options,
-    ) -> String {
+    fn noise(&self, row: &Row<'_>, options: &Options) -> String {
         let other = match self.verdict {
             Verdict::Adequate => options.infers_noise,
             Verdict::Errors => self.takes_noise(),
@@ -141,7 +137,7 @@ impl Decision {
     }
 }
 
-impl<P: Program> Subject<'_, P> {
+impl Subject<'_> {
     fn diagnose(
         &self,
         options: &Options,
@@ -170,7 +166,7 @@ impl<P: Program> Subject<'_, P> {
         options: &Options,
         seed: Seed,
         progress: &dyn Progress,
-    ) -> Result<Table<'_, P>> {
+    ) -> Result<Table<'_>> {
         progress.begin("weighing noises", None);
         let (program, extent) = (self.program, &self.extent);
         let (named, survey) = (&options.noise, seed.child(1));
@@ -186,7 +182,7 @@ impl<P: Program> Subject<'_, P> {
     /// The row of the noise that the model goes on with, all fits made.
     fn taken(
         &self,
-        table: &mut Table<'_, P>,
+        table: &mut Table<'_>,
         options: &Options,
         seed: Seed,
         progress: &dyn Progress,
@@ -212,11 +208,7 @@ impl<P: Program> Subject<'_, P> {
         Ok(taken(named, &logs))
     }
 
-    fn log_of_noises(
-        &self,
-        table: &Table<'_, P>,
-        options: &Options,
-    ) -> Vec<f64> {
+    fn log_of_noises(&self, table: &Table<'_>, options: &Options) -> Vec<f64> {
         let rows: Vec<Seen<'_>> = table.rows.iter().map(Seen::of).collect();
         log_of_noises(&rows, &self.all, &options.odds)
     }
@@ -224,7 +216,7 @@ impl<P: Program> Subject<'_, P> {
     /// What was found and decided, as plain data.
     fn shown(
         &self,
-        table: &Table<'_, P>,
+        table: &Table<'_>,
         decision: &Decision,
         options: &Options,
         seed: Seed,
@@ -271,7 +263,7 @@ impl<P: Program> Subject<'_, P> {
     /// The force that is left beside what was selected.
     fn rest(
         &self,
-        row: &Row<'_, P>,
+        row: &Row<'_>,
         after: Option<&FittedModel<'_>>,
         seed: Seed,
     ) -> Result<(Option<Rest>, Option<FreeForce>)> {
@@ -295,7 +287,7 @@ impl<P: Program> Subject<'_, P> {
     /// From evidences to probabilities, a verdict, and what is added.
     fn decide(
         &self,
-        table: &Table<'_, P>,
+        table: &Table<'_>,
         row: usize,
         options: &Options,
         seed: Seed,
@@ -342,7 +334,7 @@ impl<P: Program> Subject<'_, P> {
     /// worse.
     fn withheld(
         &self,
-        table: &Table<'_, P>,
+        table: &Table<'_>,
         decision: &Decision,
     ) -> Result<Option<Withheld>> {
         let (events, none) = (&self.events, &table.as_it_was()?.none);
@@ -398,7 +390,7 @@ impl<P: Program> Subject<'_, P> {
     fn free_form(
         &self,
         verdict: Verdict,
-        row: &Row<'_, P>,
+        row: &Row<'_>,
     ) -> Result<Option<(Box<dyn Mechanism>, Fit)>> {
         if verdict != Verdict::Unexplained {
             return Ok(None);
@@ -412,8 +404,8 @@ impl<P: Program> Subject<'_, P> {
     /// physics left open.
     fn law(
         &self,
-        table: &Table<'_, P>,
-        row: &Row<'_, P>,
+        table: &Table<'_>,
+        row: &Row<'_>,
         compared: &Diagnosis,
         options: &Options,
         seed: Seed,
@@ -452,8 +444,8 @@ impl<P: Program> Subject<'_, P> {
     /// Before, after, and what both predict.
     fn compared(
         &self,
-        table: &Table<'_, P>,
-        row: &Row<'_, P>,
+        table: &Table<'_>,
+        row: &Row<'_>,
         after: Option<&FittedModel<'_>>,
         options: &Options,
         seed: Seed,
@@ -496,10 +488,10 @@ impl<P: Program> Subject<'_, P> {
 }
 
 /// What the corrected model is, to be shown.
-fn corrected_model<'a, P>(
+fn corrected_model<'a>(
     decision: &'a Decision,
     free: Option<&'a (Box<dyn Mechanism>, Fit)>,
-    row: &'a Row<'_, P>,
+    row: &'a Row<'_>,
     all: &'a [Box<dyn Mechanism>],
     seed: Seed,
 ) -> Option<FittedModel<'a>> {

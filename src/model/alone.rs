@@ -1,28 +1,29 @@
 //! One of several events of a program, and what all of them have in common.
 
+use super::any_program::AnyProgram;
+use super::face::{Model, Point};
 use super::listener::Collector;
 use super::number::Number;
-use super::program::Model;
-use super::program::{Point, Program};
+use super::program::Program;
 use super::run::{Entered, Run};
 use crate::error::{Outcome, Result};
 use crate::mechanism::Unknown;
 
 /// A program for one of its events alone; itself a program.
 #[derive(Debug)]
-pub(crate) struct Alone<'a, P> {
-    program: &'a P,
+pub(crate) struct Alone<'a> {
+    program: &'a dyn AnyProgram,
     event: usize,
 }
 
-impl<'a, P: Program> Alone<'a, P> {
+impl<'a> Alone<'a> {
     /// The program for its `event`-th event.
-    pub(crate) fn new(program: &'a P, event: usize) -> Self {
+    pub(crate) fn new(program: &'a dyn AnyProgram, event: usize) -> Self {
         Self { program, event }
     }
 }
 
-impl<P: Program> Program for Alone<'_, P> {
+impl Program for Alone<'_> {
     fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
         run.entering(Entered::Only(self.event), |run| self.program.run(run))
     }
@@ -31,15 +32,18 @@ impl<P: Program> Program for Alone<'_, P> {
 /// The parameters that all events of a program have in common, those of
 /// mechanisms first, under their priors; a program without data.
 #[derive(Debug)]
-pub(crate) struct Common<'a, P> {
-    program: &'a P,
+pub(crate) struct Common<'a> {
+    program: &'a dyn AnyProgram,
     added: Vec<Unknown>,
 }
 
-impl<'a, P: Program> Common<'a, P> {
+impl<'a> Common<'a> {
     /// What a program's events have in common, with what mechanisms add to
     /// it, by name.
-    pub(crate) fn new(program: &'a P, added: Vec<Unknown>) -> Self {
+    pub(crate) fn new(
+        program: &'a dyn AnyProgram,
+        added: Vec<Unknown>,
+    ) -> Self {
         Self { program, added }
     }
 
@@ -54,7 +58,7 @@ impl<'a, P: Program> Common<'a, P> {
     }
 }
 
-impl<P: Program> Program for Common<'_, P> {
+impl Program for Common<'_> {
     fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
         run.amounts(&self.added)?;
         run.entering(Entered::Nothing, |run| self.program.run(run))

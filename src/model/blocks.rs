@@ -1,8 +1,7 @@
 //! Which blocks a model has, told by the model itself.
 
+use super::face::{Model, Point};
 use super::listener::Listener;
-use super::program::Model;
-use super::program::Point;
 use crate::error::Result;
 use crate::scalar::Plain;
 

@@ -12,13 +12,13 @@ use std::ops::Range;
 
 use nalgebra::DVector;
 
+use super::any_program::AnyProgram;
 use super::density::Density;
 use super::information::Information;
 use super::jacobian::Jacobian;
 use super::listener::{Declaration, Listener};
 use super::number::Number;
 use super::pass::{passes, run};
-use super::program::Program;
 use super::run::Source;
 use crate::error::{Error, Outcome, Result};
 use crate::noise::{Informing, Noise};
@@ -122,8 +122,8 @@ const MOST: [usize; 2] = [8, 16];
 
 /// The information of a program at a place on the real line, of some of the
 /// coordinates.
-pub(super) fn information<P: Program>(
-    program: &P,
+pub(super) fn information(
+    program: &dyn AnyProgram,
     z: &[f64],
     of: Range<usize>,
 ) -> Result<Information> {
@@ -143,10 +143,10 @@ pub(super) fn information<P: Program>(
         let (first, slots) =
             (of.start + done, &mut gradient.as_mut_slice()[done..]);
         let density = match wide {
-            2 => pass::<Grad<2>, P>(program, z, first, slots, &mut columns),
-            4 => pass::<Grad<4>, P>(program, z, first, slots, &mut columns),
-            8 => pass::<Grad<8>, P>(program, z, first, slots, &mut columns),
-            _ => pass::<Grad<16>, P>(program, z, first, slots, &mut columns),
+            2 => pass::<Grad<2>>(program, z, first, slots, &mut columns),
+            4 => pass::<Grad<4>>(program, z, first, slots, &mut columns),
+            8 => pass::<Grad<8>>(program, z, first, slots, &mut columns),
+            _ => pass::<Grad<16>>(program, z, first, slots, &mut columns),
         }?;
         let is_zero = density.rejected.is_some();
         last = Some(density);
@@ -165,8 +165,8 @@ pub(super) fn information<P: Program>(
 }
 
 /// One run, for as many coordinates as its numbers carry derivatives of.
-fn pass<K: Number + Forward, P: Program>(
-    program: &P,
+fn pass<K: Number + Forward>(
+    program: &dyn AnyProgram,
     z: &[f64],
     first: usize,
     gradient: &mut [f64],
@@ -175,7 +175,7 @@ fn pass<K: Number + Forward, P: Program>(
     let source = Source::Line { z, first };
     let mut part = Part { columns: &mut *columns, log_likelihood: None };
     let (density, prior, jacobian, likelihood) =
-        run::<K, P>(program, source, Some(z.len()), Some(&mut part))?;
+        run::<K>(program, source, Some(z.len()), Some(&mut part))?;
     let total = prior + jacobian + likelihood;
     for (i, slot) in gradient.iter_mut().take(K::DIRECTIONS).enumerate() {
         *slot = total.partial(i);
@@ -189,7 +189,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::model::{Label, Posterior, Run};
+    use crate::model::{Label, Posterior, Program, Run};
     use crate::prior::{AnyPrior, Normal};
 
     /// 0.5 ~ N(a'x, 1) was seen, with x ~ N(0, 1) and a known.

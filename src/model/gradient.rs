@@ -1,9 +1,9 @@
 //! Gradients of the log density: forward, or backwards along a tape.
 
+use super::any_program::AnyProgram;
 use super::density::{Density, Weights};
 use super::number::Number;
 use super::pass::{passes, run};
-use super::program::Program;
 use super::run::Source;
 use crate::error::{Error, Result};
 use crate::scalar::{Forward, Grad, Real, Recording, Reverse};
@@ -16,8 +16,8 @@ const REVERSE_FROM: usize = 17;
 
 /// The density at a place on the real line, and the gradient of its weighted
 /// logarithm there.
-pub(super) fn gradient<P: Program>(
-    program: &P,
+pub(super) fn gradient(
+    program: &dyn AnyProgram,
     z: &[f64],
     weights: Weights,
     gradient: &mut [f64],
@@ -41,8 +41,8 @@ fn weighted<K: Number>(
 
 /// From the end backwards, for all directions at once; `None` where the tape
 /// does not know how the density was formed.
-fn reverse<P: Program>(
-    program: &P,
+fn reverse(
+    program: &dyn AnyProgram,
     z: &[f64],
     weights: Weights,
     gradient: &mut [f64],
@@ -50,7 +50,7 @@ fn reverse<P: Program>(
     let recording = Recording::begin();
     let source = Source::Line { z, first: 0 };
     let (density, prior, jacobian, likelihood) =
-        run::<Reverse, P>(program, source, Some(z.len()), None)?;
+        run::<Reverse>(program, source, Some(z.len()), None)?;
     let total = weighted(weights, [prior, jacobian, likelihood]);
     Ok(recording.gradient(&total, gradient).then_some(density))
 }
@@ -59,8 +59,8 @@ fn reverse<P: Program>(
 const MOST: usize = 8;
 
 /// The gradient, some directions at a time.
-fn forward<P: Program>(
-    program: &P,
+fn forward(
+    program: &dyn AnyProgram,
     z: &[f64],
     weights: Weights,
     gradient: &mut [f64],
@@ -70,9 +70,9 @@ fn forward<P: Program>(
     for (first, wide) in passes(z.len().max(1), MOST) {
         let slots = &mut gradient[first..];
         let found = match wide {
-            2 => pass::<Grad<2>, P>(program, z, weights, first, slots),
-            4 => pass::<Grad<4>, P>(program, z, weights, first, slots),
-            _ => pass::<Grad<8>, P>(program, z, weights, first, slots),
+            2 => pass::<Grad<2>>(program, z, weights, first, slots),
+            4 => pass::<Grad<4>>(program, z, weights, first, slots),
+            _ => pass::<Grad<8>>(program, z, weights, first, slots),
         }?;
         let slides = density.map_or(0, |d: Density| d.slides) + found.slides;
         let zero = found.rejected.is_some();
@@ -85,8 +85,8 @@ fn forward<P: Program>(
 }
 
 /// The derivatives along as many directions as the kind carries.
-fn pass<K: Number + Forward, P: Program>(
-    program: &P,
+fn pass<K: Number + Forward>(
+    program: &dyn AnyProgram,
     z: &[f64],
     weights: Weights,
     first: usize,
@@ -94,7 +94,7 @@ fn pass<K: Number + Forward, P: Program>(
 ) -> Result<Density> {
     let source = Source::Line { z, first };
     let (density, prior, jacobian, likelihood) =
-        run::<K, P>(program, source, Some(z.len()), None)?;
+        run::<K>(program, source, Some(z.len()), None)?;
     let total = weighted(weights, [prior, jacobian, likelihood]);
     for (i, slot) in gradient.iter_mut().take(K::DIRECTIONS).enumerate() {
         *slot = total.partial(i);

@@ -3,7 +3,10 @@
 //! A model's body is generic; it is compiled for plain numbers, for four
 //! widths of gradient and for the tape.
 
+use super::any_program::AnyProgram;
+use super::run::Run;
 use crate::context::Context;
+use crate::error::Outcome;
 use crate::mechanism::ChangeKind;
 use crate::noise::NoiseKind;
 use crate::observe::MotionKind;
@@ -16,6 +19,12 @@ pub trait Number:
 {
     /// Runs `work` with this thread's context for this kind.
     fn with_context<R>(work: impl FnOnce(&Context<Self>) -> R) -> R;
+
+    /// Runs the body of a program of any type with numbers of this kind.
+    ///
+    /// # Errors
+    /// As [`Program::run`](super::Program::run).
+    fn run_any(program: &dyn AnyProgram, run: &mut Run<'_, Self>) -> Outcome;
 }
 
 macro_rules! number {
@@ -30,6 +39,13 @@ macro_rules! number {
                         const { Context::new() };
                 }
                 CONTEXT.with(work)
+            }
+
+            fn run_any(
+                program: &dyn AnyProgram,
+                run: &mut Run<'_, Self>,
+            ) -> Outcome {
+                program.run_of(run)
             }
         })*
     };

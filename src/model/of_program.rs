@@ -1,13 +1,17 @@
-//! Every program is a model: the one run, asked in different ways.
+//! Every program is a model: the one run, asked in different ways; and one of
+//! any type, which is a program again.
 
+use super::any_program::{AnyProgram, RunOf};
 use super::density::{Density, Weights};
+use super::face::{Model, Point};
 use super::information::Information;
 use super::listener::Listener;
+use super::number::Number;
 use super::pass::run;
-use super::program::{Model, Point, Program};
-use super::run::Source;
+use super::program::Program;
+use super::run::{Run, Source};
 use super::{fisher, gradient};
-use crate::error::Result;
+use crate::error::{Outcome, Result};
 use crate::scalar::Plain;
 
 impl<P: Program> Model for P {
@@ -22,7 +26,7 @@ impl<P: Program> Model for P {
             Point::Prior(rng) => (Source::Prior { rng }, None),
             Point::Middle => (Source::Middle, None),
         };
-        let (density, ..) = run::<Plain, P>(self, source, expected, listener)?;
+        let (density, ..) = run::<Plain>(self, source, expected, listener)?;
         Ok(density)
     }
 
@@ -45,5 +49,35 @@ impl<P: Program> Model for P {
         coordinate: usize,
     ) -> Result<Information> {
         fisher::information(self, z, coordinate..coordinate + 1)
+    }
+}
+
+impl<K: Number, P: Program> RunOf<K> for P {
+    fn run_of(&self, run: &mut Run<'_, K>) -> Outcome {
+        self.run(run)
+    }
+}
+
+impl<P: Program> AnyProgram for P {
+    fn count_of_events(&self) -> usize {
+        self.events()
+    }
+
+    fn under_noise<'s>(
+        &'s self,
+        name: &str,
+    ) -> Result<Option<Box<dyn AnyProgram + 's>>> {
+        let other = self.with_noise(name)?;
+        Ok(other.map(|other| Box::new(other) as Box<dyn AnyProgram + 's>))
+    }
+}
+
+impl Program for dyn AnyProgram + '_ {
+    fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
+        K::run_any(self, run)
+    }
+
+    fn events(&self) -> usize {
+        self.count_of_events()
     }
 }

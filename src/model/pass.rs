@@ -1,9 +1,9 @@
 //! One run of a program's body, and what came of it.
 
+use super::any_program::AnyProgram;
 use super::density::Density;
 use super::listener::Listener;
 use super::number::Number;
-use super::program::Program;
 use super::run::{Run, SAME_PARAMETERS, Source};
 use crate::error::{Error, Result, Stop};
 use crate::scalar::Real;
@@ -28,8 +28,8 @@ pub(super) fn passes(
 }
 
 /// One run of the body, its failures sorted into density zero and the rest.
-pub(super) fn run<K: Number, P: Program>(
-    program: &P,
+pub(super) fn run<K: Number>(
+    program: &dyn AnyProgram,
     source: Source<'_>,
     expected: Option<usize>,
     listener: Option<&mut dyn Listener<K>>,
@@ -38,7 +38,7 @@ pub(super) fn run<K: Number, P: Program>(
         let before = context.slides();
         let listener = listener.map(|l| l as &mut dyn Listener<K>);
         let mut run = Run::new(context, source, listener);
-        let outcome = program.run(&mut run);
+        let outcome = K::run_any(program, &mut run);
         let slides = context.slides() - before;
         let parts = (run.log_prior, run.log_jacobian, run.log_likelihood);
         let zero = |reason| {

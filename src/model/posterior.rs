@@ -8,9 +8,9 @@ use std::collections::HashSet;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use super::density::{Density, Weights};
+use super::face::{Model, Point};
 use super::information::Information;
 use super::listener::{Collected, Collector, Listener, Places};
-use super::program::{Model, Point};
 use super::run::SAME_PARAMETERS;
 use crate::error::{Error, Result};
 use crate::scalar::Plain;

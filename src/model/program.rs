@@ -1,13 +1,8 @@
-//! Programs, and models as backends see them.
+//! Programs: the bodies of models.
 
-use super::density::{Density, Weights};
-use super::information::Information;
-use super::listener::Listener;
 use super::number::Number;
 use super::run::Run;
 use crate::error::{Outcome, Result};
-use crate::scalar::Plain;
-use crate::seed::Rng;
 
 /// A model's body: declares parameters, scores data.
 ///
@@ -38,62 +33,5 @@ pub trait Program: Sync {
         Self: Sized,
     {
         Ok(None)
-    }
-}
-
-/// A point at which a model is evaluated.
-#[derive(Debug)]
-pub enum Point<'a> {
-    /// Places on the real line, one for each parameter.
-    Line(&'a [f64]),
-    /// The parameters' values as named.
-    Natural(&'a [f64]),
-    /// A draw from the prior.
-    Prior(&'a mut Rng),
-    /// The middle of each parameter's support, to learn what there is.
-    Middle,
-}
-
-/// A model as backends see it. Implemented for every [`Program`].
-pub trait Model: Sync {
-    /// The density at a point; a listener hears the run.
-    ///
-    /// # Errors
-    /// What no other parameter values would mend.
-    fn evaluate(
-        &self,
-        point: Point<'_>,
-        listener: Option<&mut dyn Listener<Plain>>,
-    ) -> Result<Density>;
-
-    /// The density at a place on the real line, and the gradient of its
-    /// weighted logarithm there, exact to round-off.
-    ///
-    /// # Errors
-    /// As [`Model::evaluate`].
-    fn gradient(
-        &self,
-        z: &[f64],
-        weights: Weights,
-        gradient: &mut [f64],
-    ) -> Result<Density>;
-
-    /// The density at a place on the real line to second order, from first
-    /// derivatives.
-    ///
-    /// # Errors
-    /// As [`Model::evaluate`].
-    fn information(&self, z: &[f64]) -> Result<Information>;
-
-    /// The same along one coordinate alone.
-    ///
-    /// # Errors
-    /// As [`Model::evaluate`].
-    fn information_along(
-        &self,
-        z: &[f64],
-        coordinate: usize,
-    ) -> Result<Information> {
-        Ok(self.information(z)?.of_some(&[coordinate]))
     }
 }

@@ -1,11 +1,11 @@
 //! A model of which some parameters are known.
 
 use super::density::{Density, Weights};
+use super::face::{Model, Point};
 use super::information::Information;
 use super::label::Label;
 use super::listener::{Collector, Declaration, Listener};
 use super::posterior::Posterior;
-use super::program::{Model, Point};
 use crate::error::{Outcome, Result};
 use crate::noise::Noise;
 use crate::observe::Series;

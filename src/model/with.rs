@@ -1,6 +1,7 @@
 //! A model with mechanisms added to it from outside.
 
 use super::added::Added;
+use super::any_program::AnyProgram;
 use super::number::Number;
 use super::program::Program;
 use super::run::Run;
@@ -13,15 +14,18 @@ use crate::mechanism::Mechanism;
 /// The mechanisms' parameters come first, each named
 /// `mechanism.parameter`.
 #[derive(Debug)]
-pub struct With<'a, P> {
-    program: &'a P,
+pub struct With<'a> {
+    program: &'a dyn AnyProgram,
     added: Added<&'a dyn Mechanism>,
     known: Option<f64>,
 }
 
-impl<'a, P: Program> With<'a, P> {
+impl<'a> With<'a> {
     /// Adds mechanisms to a program.
-    pub fn new(program: &'a P, mechanisms: &[&'a dyn Mechanism]) -> Self {
+    pub fn new(
+        program: &'a dyn AnyProgram,
+        mechanisms: &[&'a dyn Mechanism],
+    ) -> Self {
         let mut added = Added::default();
         mechanisms.iter().for_each(|mechanism| added.push(*mechanism));
         Self { program, added, known: None }
@@ -40,7 +44,7 @@ impl<'a, P: Program> With<'a, P> {
     }
 }
 
-impl<P: Program> Program for With<'_, P> {
+impl Program for With<'_> {
     fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
         let mut change = self.added.ask(run)?;
         change.known = self.known.or(change.known);

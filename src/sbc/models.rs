@@ -11,7 +11,7 @@ use crate::diagnosis::{Odds, attribute, judge, prior_probabilities};
 use crate::error::{Error, Result};
 use crate::infer::{Progress, Quiet};
 use crate::mechanism::Mechanism;
-use crate::model::{Posterior, Program, With};
+use crate::model::{AnyProgram, Posterior, Program, With};
 use crate::observe::Series;
 use crate::predict::simulate;
 use crate::seed::{Rng, Seed};
@@ -32,7 +32,7 @@ pub type Remaking<'a, P> = &'a (dyn Fn(&[Series]) -> Result<P> + Sync);
 /// # Errors
 /// An improper prior, or a model that fails.
 pub fn choices<P: Program>(
-    program: &P,
+    program: &dyn AnyProgram,
     remade: Remaking<'_, P>,
     catalogue: &[Box<dyn Mechanism>],
     replications: usize,
@@ -56,8 +56,8 @@ pub fn choices<P: Program>(
 }
 
 /// The models that are chosen from.
-struct Models<'a, P> {
-    program: &'a P,
+struct Models<'a> {
+    program: &'a dyn AnyProgram,
     catalogue: &'a [Box<dyn Mechanism>],
     /// The model as it is, then each name of the catalogue.
     names: &'a [String],
@@ -71,8 +71,12 @@ struct Drawn {
     redrawn: usize,
 }
 
-impl<P: Program> Models<'_, P> {
-    fn case(&self, remade: Remaking<'_, P>, seed: Seed) -> Result<Choice> {
+impl Models<'_> {
+    fn case<P: Program>(
+        &self,
+        remade: Remaking<'_, P>,
+        seed: Seed,
+    ) -> Result<Choice> {
         let Drawn { truth, series, redrawn } = self.drawn(seed.child(0))?;
         let program = remade(&series)?;
         let found =

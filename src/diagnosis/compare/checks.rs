@@ -10,7 +10,7 @@ use crate::elpd::leave_one_out;
 use crate::error::{Error, Result};
 use crate::infer::{Backend, LaplaceMixture, Quiet, SearchSpace, climb};
 use crate::mechanism::Mechanism;
-use crate::model::{Point, Posterior, Program, With};
+use crate::model::{AnyProgram, Point, Posterior, With};
 use crate::noise::Stationary;
 use crate::observe::{Event, Quantity, Series};
 use crate::predict::{Bands, predictive_of_all, rmse};
@@ -55,8 +55,8 @@ pub(crate) struct Checks {
 const KNOWN: f64 = 0.7;
 
 /// Checks a model on the recordings of its events.
-pub(crate) fn checks<P: Program>(
-    program: &P,
+pub(crate) fn checks(
+    program: &dyn AnyProgram,
     events: &[&Event],
     fitted: &FittedModel<'_>,
 ) -> Result<Checks> {
@@ -96,8 +96,8 @@ pub(crate) fn checks<P: Program>(
 }
 
 /// The root mean square error of the posterior mean prediction.
-pub(crate) fn posterior_rmse<P: Program>(
-    program: &P,
+pub(crate) fn posterior_rmse(
+    program: &dyn AnyProgram,
     events: &[&Event],
     mechanisms: &[&dyn Mechanism],
     fit: &Fit,
@@ -186,8 +186,8 @@ fn replay(posterior: &Posterior<'_>, draws: &Draws) -> Result<Replayed> {
 }
 
 /// The RMSE over the last values, of the model fitted to those before.
-fn held_out<P: Program>(
-    program: &P,
+fn held_out(
+    program: &dyn AnyProgram,
     fitted: &FittedModel<'_>,
     values: &[Vec<f64>],
 ) -> Result<f64> {

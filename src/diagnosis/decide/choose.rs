@@ -11,13 +11,12 @@ use crate::diagnosis::findings::{Judged, Verdict};
 use crate::diagnosis::hypothesis::UNKNOWN;
 use crate::error::Result;
 use crate::mechanism::{Family, Mechanism};
-use crate::model::Program;
 use crate::seed::Seed;
 
 /// What there is to choose from.
-pub(crate) struct Choice<'a, P> {
+pub(crate) struct Choice<'a> {
     /// The model under the noise that it goes on with.
-    pub(crate) noisy: &'a Noisy<'a, P>,
+    pub(crate) noisy: &'a Noisy<'a>,
     pub(crate) all: &'a [Box<dyn Mechanism>],
     /// The fit of each of them, under one noise.
     pub(crate) found: &'a Attribution,
@@ -29,7 +28,7 @@ pub(crate) struct Choice<'a, P> {
     pub(crate) judged: &'a [Judged],
     pub(crate) beforehand: Beforehand<'a>,
     /// The model under the other noises that are kept.
-    pub(crate) elsewhere: Vec<&'a Noisy<'a, P>>,
+    pub(crate) elsewhere: Vec<&'a Noisy<'a>>,
     /// Whether one mechanism has to do.
     pub(crate) singly: bool,
     pub(crate) seed: Seed,
@@ -45,7 +44,7 @@ pub(crate) struct Explained {
     pub(crate) equal: Option<Chosen>,
 }
 
-impl<P: Program> Choice<'_, P> {
+impl Choice<'_> {
     /// The model to go on with: the best mechanism where there is one, or a
     /// pair or three where the evidence rises.
     pub(crate) fn choose(&self, verdict: Verdict) -> Result<Option<Chosen>> {

@@ -63,7 +63,7 @@ pub(crate) struct Seen<'a> {
 }
 
 impl<'a> Seen<'a> {
-    pub(crate) fn of<P>(row: &'a Row<'_, P>) -> Self {
+    pub(crate) fn of(row: &'a Row<'_>) -> Self {
         Self {
             none: &row.noisy.none,
             candidates: row.candidates.clone(),

@@ -7,7 +7,6 @@ use crate::diagnosis::evidence::table::{Row, Table};
 use crate::diagnosis::findings::{JudgedNoise, ParameterSummary};
 use crate::draws::{log_sum_exp, summarise};
 use crate::error::Result;
-use crate::model::Program;
 use crate::noise::{self, Form};
 
 /// In log10: by how much another noise must be more probable than the named
@@ -28,8 +27,8 @@ pub(crate) fn taken(named: Option<usize>, logs: &[f64]) -> usize {
 ///
 /// # Errors
 /// A name that no noise has.
-pub(crate) fn judged_noises<P: Program>(
-    table: &Table<'_, P>,
+pub(crate) fn judged_noises(
+    table: &Table<'_>,
     logs: &[f64],
 ) -> Result<Vec<JudgedNoise>> {
     let total = log_sum_exp(logs.iter().copied());
@@ -56,7 +55,7 @@ pub(crate) fn judged_noises<P: Program>(
 }
 
 /// The noise's parameters, with what has the most evidence under it.
-fn parameters<P: Program>(row: &Row<'_, P>) -> Vec<ParameterSummary> {
+fn parameters(row: &Row<'_>) -> Vec<ParameterSummary> {
     let found = row.found.iter().flat_map(|found| &found.candidates);
     let all = [&row.noisy.none].into_iter().chain(found);
     let more = |a: &&Fit, b: &&Fit| a.log_evidence.total_cmp(&b.log_evidence);

@@ -23,7 +23,7 @@ use crate::draws::log_sum_exp;
 use crate::error::Result;
 use crate::infer::Precision;
 use crate::mechanism::Mechanism;
-use crate::model::Program;
+use crate::model::AnyProgram;
 use crate::seed::Seed;
 
 /// In log10: by how much a further term must raise the evidence, besides what
@@ -35,8 +35,8 @@ const MOST: usize = 3;
 const AT_ONCE: usize = 4;
 
 /// A search for the terms that are worth most together.
-pub(crate) struct Stepwise<'a, P> {
-    pub(crate) program: &'a P,
+pub(crate) struct Stepwise<'a> {
+    pub(crate) program: &'a dyn AnyProgram,
     pub(crate) all: &'a [Box<dyn Mechanism>],
     /// Where the model's own parameters are likely beside a force of free
     /// form, on the real line.
@@ -47,7 +47,7 @@ pub(crate) struct Stepwise<'a, P> {
     /// Which of them may be terms, most probable first.
     pub(crate) candidates: Vec<usize>,
     /// The model under the other noises that are kept.
-    pub(crate) elsewhere: &'a [&'a Noisy<'a, P>],
+    pub(crate) elsewhere: &'a [&'a Noisy<'a>],
     pub(crate) seed: Seed,
 }
 
@@ -93,7 +93,7 @@ impl Look<'_> {
     }
 }
 
-impl<'a, P: Program> Stepwise<'a, P> {
+impl<'a> Stepwise<'a> {
     /// The terms that are worth most, from a first one on.
     ///
     /// # Errors

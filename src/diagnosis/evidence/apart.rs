@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::infer::{Group, Grouped, Inference, LaplaceMixture, Quiet};
 use crate::mechanism::{Concern, Mechanism, Unknown};
-use crate::model::{Alone, Common, Posterior, Program, With};
+use crate::model::{Alone, AnyProgram, Common, Posterior, Program, With};
 use crate::seed::Seed;
 
 /// Where the coordinates of a program of several events with mechanisms are:
@@ -98,8 +98,8 @@ impl<'a> Shares<'a> {
 ///
 /// # Errors
 /// As [`LaplaceMixture::explore_groups`].
-pub(crate) fn explore<P: Program>(
-    program: &P,
+pub(crate) fn explore(
+    program: &dyn AnyProgram,
     mechanisms: &[&dyn Mechanism],
     whole: &Posterior<'_>,
     backend: &LaplaceMixture,
@@ -108,9 +108,9 @@ pub(crate) fn explore<P: Program>(
     let events = program.events();
     let shares: Vec<Shares<'_>> =
         mechanisms.iter().map(|m| Shares::of(*m, events)).collect();
-    let alone: Vec<Alone<'_, P>> =
+    let alone: Vec<Alone<'_>> =
         (0..events).map(|i| Alone::new(program, i)).collect();
-    let with: Vec<With<'_, Alone<'_, P>>> = alone
+    let with: Vec<With<'_>> = alone
         .iter()
         .enumerate()
         .map(|(i, one)| {
@@ -121,7 +121,7 @@ pub(crate) fn explore<P: Program>(
     let posteriors: Vec<Posterior<'_>> =
         with.iter().map(|one| Posterior::new(one)).collect::<Result<_>>()?;
     let shared = Common::new(program, Vec::new()).dimension()?;
-    let own = |(one, with): (&Posterior<'_>, &With<'_, _>)| {
+    let own = |(one, with): (&Posterior<'_>, &With<'_>)| {
         one.dimension() - with.added() - shared
     };
     let own: Vec<usize> = posteriors.iter().zip(&with).map(own).collect();

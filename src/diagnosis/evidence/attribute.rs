@@ -11,7 +11,7 @@ use crate::draws::log_sum_exp;
 use crate::error::Result;
 use crate::infer::{LaplaceMixture, Precision, Progress, SearchSpace};
 use crate::mechanism::{Extent, Mechanism};
-use crate::model::{Posterior, Program, With};
+use crate::model::{AnyProgram, Posterior, With};
 use crate::physics::forces::Axis;
 use crate::seed::Seed;
 
@@ -90,8 +90,8 @@ impl Care {
 ///
 /// # Errors
 /// An improper prior, or a model that fails.
-pub fn attribute<P: Program>(
-    program: &P,
+pub fn attribute(
+    program: &dyn AnyProgram,
     extent: Option<&Extent>,
     catalogue: &[Box<dyn Mechanism>],
     seed: Seed,
@@ -106,8 +106,8 @@ pub fn attribute<P: Program>(
 ///
 /// # Errors
 /// As [`attribute`].
-pub(crate) fn attribute_beside<P: Program>(
-    program: &P,
+pub(crate) fn attribute_beside(
+    program: &dyn AnyProgram,
     none: Fit,
     extent: Option<&Extent>,
     catalogue: &[Box<dyn Mechanism>],
@@ -145,14 +145,14 @@ pub(crate) struct Known<'k> {
 }
 
 /// Mechanisms that are weighed one by one, in parallel.
-struct Weighing<'a, P> {
-    program: &'a P,
+struct Weighing<'a> {
+    program: &'a dyn AnyProgram,
     catalogue: &'a [Box<dyn Mechanism>],
     care: Care,
     seed: Seed,
 }
 
-impl<P: Program> Weighing<'_, P> {
+impl Weighing<'_> {
     fn seed_of(&self, i: usize) -> Seed {
         self.seed.child(1 + i as u64)
     }
@@ -258,8 +258,8 @@ struct Owns {
 }
 
 impl Owns {
-    fn of<P: Program>(
-        program: &P,
+    fn of(
+        program: &dyn AnyProgram,
         none: &Fit,
         forces: &[FreeForce],
     ) -> Result<Self> {
@@ -297,8 +297,8 @@ fn tails(mut drawn: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
 
 /// Looks at a single mechanism, from places that are known to be likely, and
 /// with the model's own parameters beginning at each of some places.
-fn single<P: Program>(
-    program: &P,
+fn single(
+    program: &dyn AnyProgram,
     mechanism: &dyn Mechanism,
     (owns, known): (&Owns, &[Vec<f64>]),
     care: Care,

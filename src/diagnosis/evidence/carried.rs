@@ -4,7 +4,7 @@ use crate::diagnosis::evidence::fit::Fit;
 use crate::error::Result;
 use crate::infer::{LaplaceMixture, SearchSpace};
 use crate::mechanism::Mechanism;
-use crate::model::{Posterior, Program, With};
+use crate::model::{AnyProgram, Posterior, With};
 use crate::seed::Seed;
 
 /// By how much more, in ln, normal approximations of the peaks promise of a
@@ -13,9 +13,9 @@ use crate::seed::Seed;
 ///
 /// # Errors
 /// A model that fails.
-pub(crate) fn gain<P: Program>(
-    (from, fit): (&P, &Fit),
-    (to, owns): (&P, [&[f64]; 2]),
+pub(crate) fn gain(
+    (from, fit): (&dyn AnyProgram, &Fit),
+    (to, owns): (&dyn AnyProgram, [&[f64]; 2]),
     mechanisms: &[&dyn Mechanism],
     seed: Seed,
 ) -> Result<f64> {
@@ -40,9 +40,9 @@ pub(crate) fn gain<P: Program>(
 ///
 /// # Errors
 /// A model that fails.
-pub(crate) fn likeliest<P: Program>(
-    (from, fit): (&P, &Fit),
-    (to, owns): (&P, [&[f64]; 2]),
+pub(crate) fn likeliest(
+    (from, fit): (&dyn AnyProgram, &Fit),
+    (to, owns): (&dyn AnyProgram, [&[f64]; 2]),
     mechanisms: &[&dyn Mechanism],
 ) -> Result<Vec<Vec<f64>>> {
     let (old, new) = (With::new(from, mechanisms), With::new(to, mechanisms));

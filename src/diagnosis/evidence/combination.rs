@@ -6,7 +6,7 @@ use super::screen::COARSE;
 use crate::error::Result;
 use crate::infer::{LaplaceMixture, Precision, SearchSpace};
 use crate::mechanism::Mechanism;
-use crate::model::{Posterior, Program, With};
+use crate::model::{AnyProgram, Posterior, With};
 use crate::seed::Seed;
 
 /// A model whose mechanisms are known, with where it is best on the line.
@@ -46,8 +46,8 @@ impl<'a> Combination<'a> {
     ///
     /// # Errors
     /// An improper prior, or a model that fails.
-    pub(crate) fn pair<P: Program>(
-        program: &P,
+    pub(crate) fn pair(
+        program: &dyn AnyProgram,
         mechanisms: [&'a dyn Mechanism; 2],
         fits: [&Fit; 2],
         open: Option<&[f64]>,
@@ -94,8 +94,8 @@ impl<'a> Combination<'a> {
     ///
     /// # Errors
     /// As [`Combination::pair`].
-    pub(crate) fn extended<P: Program>(
-        program: &P,
+    pub(crate) fn extended(
+        program: &dyn AnyProgram,
         known: &Known<'_, 'a>,
         (added, fit): (&'a dyn Mechanism, &Fit),
         seed: Seed,
@@ -116,8 +116,8 @@ impl<'a> Combination<'a> {
         Self::looked(program, mechanisms, space, seed.child(9))
     }
 
-    fn looked<P: Program>(
-        program: &P,
+    fn looked(
+        program: &dyn AnyProgram,
         mechanisms: Vec<&'a dyn Mechanism>,
         space: SearchSpace,
         seed: Seed,
@@ -136,9 +136,9 @@ impl<'a> Combination<'a> {
     ///
     /// # Errors
     /// A model that fails.
-    pub(crate) fn pursued<P: Program>(
+    pub(crate) fn pursued(
         self,
-        program: &P,
+        program: &dyn AnyProgram,
         hurdle: f64,
     ) -> Result<Option<Pursued<'a>>> {
         let least = hurdle - SHORT;
@@ -178,9 +178,9 @@ impl Pursued<'_> {
     ///
     /// # Errors
     /// A model that fails.
-    pub(crate) fn fit<P: Program>(
+    pub(crate) fn fit(
         &self,
-        program: &P,
+        program: &dyn AnyProgram,
         precision: Precision,
     ) -> Result<Fit> {
         let (mechanisms, seed) = (&self.mechanisms[..], self.seed);
@@ -193,8 +193,8 @@ impl Pursued<'_> {
 ///
 /// # Errors
 /// As [`attribute`](super::attribute::attribute).
-pub fn pair<P: Program>(
-    program: &P,
+pub fn pair(
+    program: &dyn AnyProgram,
     mechanisms: [&dyn Mechanism; 2],
     fits: [&Fit; 2],
     hurdle: f64,

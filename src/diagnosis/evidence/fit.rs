@@ -10,7 +10,7 @@ use crate::infer::{
     Backend, Frozen, Inference, LaplaceMixture, Precision, Quiet,
 };
 use crate::mechanism::{Mechanism, Unknown};
-use crate::model::{Point, Posterior, Program, With};
+use crate::model::{AnyProgram, Point, Posterior, Program, With};
 use crate::prior::AnyPrior;
 use crate::seed::Seed;
 
@@ -77,9 +77,9 @@ impl Prospect {
     ///
     /// # Errors
     /// A model that fails.
-    pub(crate) fn pursued<P: Program>(
+    pub(crate) fn pursued(
         mut self,
-        program: &P,
+        program: &dyn AnyProgram,
         mechanisms: &[&dyn Mechanism],
         threshold: f64,
         seed: Seed,
@@ -105,9 +105,9 @@ impl Prospect {
     ///
     /// # Errors
     /// A model that fails.
-    pub(crate) fn fit<P: Program>(
+    pub(crate) fn fit(
         &self,
-        program: &P,
+        program: &dyn AnyProgram,
         mechanisms: &[&dyn Mechanism],
         precision: Precision,
         seed: Seed,
@@ -138,8 +138,8 @@ const FEW_ROUNDS: u64 = 2;
 ///
 /// # Errors
 /// An improper prior, or a model that fails.
-pub(crate) fn prospect<P: Program>(
-    program: &P,
+pub(crate) fn prospect(
+    program: &dyn AnyProgram,
     mechanisms: &[&dyn Mechanism],
     backend: LaplaceMixture,
     seed: Seed,
@@ -161,8 +161,8 @@ pub(crate) fn prospect<P: Program>(
 ///
 /// # Errors
 /// An improper prior, or a model that fails.
-pub fn fit<P: Program>(
-    program: &P,
+pub fn fit(
+    program: &dyn AnyProgram,
     mechanisms: &[&dyn Mechanism],
     backend: &LaplaceMixture,
     seed: Seed,

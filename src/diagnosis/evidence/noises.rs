@@ -18,7 +18,7 @@ use crate::draws::log_sum_exp;
 use crate::error::Result;
 use crate::infer::{LaplaceMixture, Precision, SearchSpace};
 use crate::mechanism::Extent;
-use crate::model::{Point, Posterior, Program};
+use crate::model::{AnyProgram, Point, Posterior};
 use crate::noise::{self, Form};
 use crate::seed::Seed;
 
@@ -41,24 +41,24 @@ const MOST: usize = 3;
 
 /// A program as it was given, or the same with another noise.
 #[derive(Debug)]
-enum Held<'a, P> {
-    Named(&'a P),
-    Other(Box<P>),
+enum Held<'a> {
+    Named(&'a dyn AnyProgram),
+    Other(Box<dyn AnyProgram + 'a>),
 }
 
-impl<P> Held<'_, P> {
+impl Held<'_> {
     fn is_named(&self) -> bool {
         matches!(self, Self::Named(_))
     }
 }
 
-impl<P> Deref for Held<'_, P> {
-    type Target = P;
+impl<'a> Deref for Held<'a> {
+    type Target = dyn AnyProgram + 'a;
 
-    fn deref(&self) -> &P {
+    fn deref(&self) -> &(dyn AnyProgram + 'a) {
         match self {
-            Self::Named(program) => program,
-            Self::Other(program) => program,
+            Self::Named(program) => *program,
+            Self::Other(program) => program.as_ref(),
         }
     }
 }
@@ -66,10 +66,10 @@ impl<P> Deref for Held<'_, P> {
 /// A program under one noise, with what its evidence is without physics and
 /// with a force of free form.
 #[derive(Debug)]
-pub(crate) struct Noisy<'a, P> {
+pub(crate) struct Noisy<'a> {
     /// The noise, as an event file names it.
     pub(crate) name: String,
-    program: Held<'a, P>,
+    program: Held<'a>,
     /// The model without physics.
     pub(crate) none: Fit,
     /// With a force of free form.
@@ -78,16 +78,16 @@ pub(crate) struct Noisy<'a, P> {
 
 /// The same before it is known whether it is kept.
 #[derive(Debug)]
-struct Weighed<'a, P> {
+struct Weighed<'a> {
     name: String,
-    program: Held<'a, P>,
+    program: Held<'a>,
     none: Prospect,
     open: Outlook,
 }
 
-impl<P> Noisy<'_, P> {
-    pub(crate) fn program(&self) -> &P {
-        &self.program
+impl Noisy<'_> {
+    pub(crate) fn program(&self) -> &dyn AnyProgram {
+        &*self.program
     }
 
     /// Where the model's own parameters are likely, on the real line.
@@ -106,7 +106,7 @@ impl<P> Noisy<'_, P> {
     }
 }
 
-impl<'a, P: Program> Weighed<'a, P> {
+impl<'a> Weighed<'a> {
     fn form(&self) -> Form {
         Form::of(&self.name)
     }
@@ -131,7 +131,7 @@ impl<'a, P: Program> Weighed<'a, P> {
         either_way(self.logs()) + named
     }
 
-    fn fitted(self, seed: Seed) -> Result<Noisy<'a, P>> {
+    fn fitted(self, seed: Seed) -> Result<Noisy<'a>> {
         let Self { name, program, open, .. } = self;
         let none = fit(&*program, &[], &LaplaceMixture::default(), seed)?;
         Ok(Noisy { name, program, none, open })
@@ -145,12 +145,12 @@ fn either_way(logs: [f64; 2]) -> f64 {
 
 /// The noises that a model is weighed under.
 #[derive(Debug)]
-pub(crate) struct Noises<'a, P> {
+pub(crate) struct Noises<'a> {
     /// Those that are kept, most evidence first, that of the named one counted
     /// tenfold.
-    pub(crate) kept: Vec<Noisy<'a, P>>,
+    pub(crate) kept: Vec<Noisy<'a>>,
     /// The named one, where it is not among them.
-    pub(crate) dropped: Option<Noisy<'a, P>>,
+    pub(crate) dropped: Option<Noisy<'a>>,
 }
 
 /// Weighs noises beside the named one, and keeps those that do nearly as well
@@ -158,12 +158,12 @@ pub(crate) struct Noises<'a, P> {
 ///
 /// # Errors
 /// A model that fails under the noise that it names.
-pub(crate) fn noises<'a, P: Program>(
-    program: &'a P,
+pub(crate) fn noises<'a>(
+    program: &'a dyn AnyProgram,
     named: &str,
     extent: &Extent,
     seed: Seed,
-) -> Result<Noises<'a, P>> {
+) -> Result<Noises<'a>> {
     let own_priors = has_own_priors(program, named, seed.child(1))?;
     let survey = Survey { program, extent, own_priors, seed };
     let mut all = vec![survey.named(named)?];
@@ -181,19 +181,19 @@ pub(crate) fn noises<'a, P: Program>(
 ///
 /// # Errors
 /// A model that fails under it.
-pub(crate) fn named_alone<'a, P: Program>(
-    program: &'a P,
+pub(crate) fn named_alone<'a>(
+    program: &'a dyn AnyProgram,
     named: &str,
     extent: &Extent,
     seed: Seed,
-) -> Result<Noises<'a, P>> {
+) -> Result<Noises<'a>> {
     let survey = Survey { program, extent, own_priors: false, seed };
     kept(vec![survey.named(named)?], seed)
 }
 
 /// Weighs a program under many noises.
-struct Survey<'a, 'e, P> {
-    program: &'a P,
+struct Survey<'a, 'e> {
+    program: &'a dyn AnyProgram,
     extent: &'e Extent,
     /// Whether the named noise has other priors than follow from the event: it
     /// stands for itself alone then. Priors that fit errors of one recording
@@ -202,14 +202,14 @@ struct Survey<'a, 'e, P> {
     seed: Seed,
 }
 
-impl<'a, P: Program> Survey<'a, '_, P> {
+impl<'a> Survey<'a, '_> {
     /// Those of some noises that none of the known ones is like, as far as
     /// the program and its recording allow them.
     fn others(
         &self,
         forms: Vec<Form>,
-        known: &[Weighed<'a, P>],
-    ) -> Result<Vec<Weighed<'a, P>>> {
+        known: &[Weighed<'a>],
+    ) -> Result<Vec<Weighed<'a>>> {
         let is_new = |form: &Form| {
             !known.iter().any(|one| one.stands_for(form, self.own_priors))
         };
@@ -220,29 +220,30 @@ impl<'a, P: Program> Survey<'a, '_, P> {
             if noise::parse(&name).is_err() {
                 continue;
             }
-            let other = self.program.with_noise(&name)?;
+            let other = self.program.under_noise(&name)?;
             // The recording's times may not allow it.
-            let allowed = |program: &P| Posterior::new(program).is_ok();
-            new.extend(other.filter(allowed).map(|program| (name, program)));
+            let allowed =
+                other.filter(|other| Posterior::new(&**other).is_ok());
+            new.extend(allowed.map(|program| (name, program)));
         }
         let weighed: Vec<Result<(Prospect, Outlook)>> = new
             .par_iter()
             .map(|(name, program)| {
-                self.weighed(name, program, simpler(name, known))
+                self.weighed(name, &**program, simpler(name, known))
             })
             .collect();
         // A noise under which nothing has a density is out of the question.
         let found = new.into_iter().zip(weighed);
         let found = found.filter_map(|((name, program), weighed)| {
             let (none, open) = weighed.ok()?;
-            let program = Held::Other(Box::new(program));
+            let program = Held::Other(program);
             Some(Weighed { name, program, none, open })
         });
         Ok(found.collect())
     }
 
     /// The named one.
-    fn named(&self, name: &str) -> Result<Weighed<'a, P>> {
+    fn named(&self, name: &str) -> Result<Weighed<'a>> {
         let (none, open) = self.weighed(name, self.program, None)?;
         let program = Held::Named(self.program);
         Ok(Weighed { name: name.to_owned(), program, none, open })
@@ -255,8 +256,8 @@ impl<'a, P: Program> Survey<'a, '_, P> {
     fn weighed(
         &self,
         name: &str,
-        program: &P,
-        simpler: Option<&Weighed<'_, P>>,
+        program: &dyn AnyProgram,
+        simpler: Option<&Weighed<'_>>,
     ) -> Result<(Prospect, Outlook)> {
         let seed = self.seed.called(name);
         let none = prospect(program, &[], rough_search(), seed.child(0))?;
@@ -276,8 +277,8 @@ impl<'a, P: Program> Survey<'a, '_, P> {
 
 /// Whether a program's noise has other priors than the same noise gets where
 /// nobody states any.
-fn has_own_priors<P: Program>(
-    program: &P,
+fn has_own_priors(
+    program: &dyn AnyProgram,
     named: &str,
     seed: Seed,
 ) -> Result<bool> {
@@ -287,10 +288,11 @@ fn has_own_priors<P: Program>(
     // By way of another memory, which leaves the priors of this one behind.
     let [white, ou] = SIMPLE;
     let is_white = Form::of(named).plain().is_like(&Form::of(white));
-    let other = program.with_noise(if is_white { ou } else { white })?;
-    let default = other.map(|other| other.with_noise(named)).transpose()?;
+    let other = program.under_noise(if is_white { ou } else { white })?;
+    let default = other.as_ref().map(|o| o.under_noise(named)).transpose()?;
     let Some(default) = default.flatten() else { return Ok(false) };
-    let (own, default) = (Posterior::new(program)?, Posterior::new(&default)?);
+    let (own, default) =
+        (Posterior::new(program)?, Posterior::new(&*default)?);
     let Some(place) = own.draw_place(&mut seed.rng())? else {
         return Ok(false);
     };
@@ -303,10 +305,10 @@ fn has_own_priors<P: Program>(
 
 /// Of some noises the one that is simpler than another and has the most
 /// evidence with a force.
-fn simpler<'w, 'a, P: Program>(
+fn simpler<'w, 'a>(
     name: &str,
-    known: &'w [Weighed<'a, P>],
-) -> Option<&'w Weighed<'a, P>> {
+    known: &'w [Weighed<'a>],
+) -> Option<&'w Weighed<'a>> {
     let form = Form::of(name);
     let simpler = known.iter().filter(|one| one.form().is_simpler_than(&form));
     simpler.max_by(|a, b| a.open.log.total_cmp(&b.open.log))
@@ -320,15 +322,15 @@ fn rough_search() -> LaplaceMixture {
 
 /// How far each is below the best of all, in ln, in the way that suits it
 /// better.
-fn short<P: Program>(one: &Weighed<'_, P>, all: &[Weighed<'_, P>]) -> f64 {
+fn short(one: &Weighed<'_>, all: &[Weighed<'_>]) -> f64 {
     let ([without, with], logs) = (most(all.iter()), one.logs());
     (without - logs[0]).min(with - logs[1])
 }
 
 /// The noises that are near the best, each with tails and with growth.
-fn decorated<P: Program>(all: &[Weighed<'_, P>]) -> Vec<Form> {
+fn decorated(all: &[Weighed<'_>]) -> Vec<Form> {
     let near = all.iter().filter(|one| short(one, all) < NEAR * LN_10);
-    let with = |one: &Weighed<'_, P>| {
+    let with = |one: &Weighed<'_>| {
         let form = one.form();
         [
             Form { has_tails: true, ..form.clone() },
@@ -339,7 +341,7 @@ fn decorated<P: Program>(all: &[Weighed<'_, P>]) -> Vec<Form> {
 }
 
 /// The noises with tails and growth, where both of them pay.
-fn doubly_decorated<P: Program>(all: &[Weighed<'_, P>]) -> Vec<Form> {
+fn doubly_decorated(all: &[Weighed<'_>]) -> Vec<Form> {
     let forms: Vec<Form> = all.iter().map(Weighed::form).collect();
     let tailed = |form: &&Form| {
         let alike = |other: &Form| other.plain().is_like(&form.plain());
@@ -352,12 +354,12 @@ fn doubly_decorated<P: Program>(all: &[Weighed<'_, P>]) -> Vec<Form> {
 /// Whether it has more evidence than each simpler noise, in either way, and on
 /// the whole than its like with the priors of the named one: a noise that does
 /// not says the same in more parameters, or in other priors.
-fn pays<P: Program>(one: &Weighed<'_, P>, all: &[Weighed<'_, P>]) -> bool {
+fn pays(one: &Weighed<'_>, all: &[Weighed<'_>]) -> bool {
     let form = one.form();
     let named = all.iter().find(|other| other.program.is_named());
     let memory = named.map(|named| named.form().memory);
     let is_stated = |form: &Form| Some(&form.memory) == memory.as_ref();
-    let says_the_same = |other: &Weighed<'_, P>| {
+    let says_the_same = |other: &Weighed<'_>| {
         let its = other.form();
         (is_stated(&its) && !is_stated(&form) && its.is_like(&form))
             && either_way(one.logs()) <= either_way(other.logs()) + MORE
@@ -372,8 +374,8 @@ fn pays<P: Program>(one: &Weighed<'_, P>, all: &[Weighed<'_, P>]) -> bool {
 }
 
 /// The most evidence of some noises, in ln, in either way.
-fn most<'w, 'a: 'w, P: Program + 'a>(
-    noises: impl Iterator<Item = &'w Weighed<'a, P>>,
+fn most<'w, 'a: 'w>(
+    noises: impl Iterator<Item = &'w Weighed<'a>>,
 ) -> [f64; 2] {
     noises.map(Weighed::logs).fold([f64::NEG_INFINITY; 2], |most, logs| {
         [most[0].max(logs[0]), most[1].max(logs[1])]
@@ -382,10 +384,7 @@ fn most<'w, 'a: 'w, P: Program + 'a>(
 
 /// The best of those that are near the best, the named one and the best in
 /// either way among them; each is fitted.
-fn kept<P: Program>(
-    mut all: Vec<Weighed<'_, P>>,
-    seed: Seed,
-) -> Result<Noises<'_, P>> {
+fn kept(mut all: Vec<Weighed<'_>>, seed: Seed) -> Result<Noises<'_>> {
     let idle: Vec<String> = all
         .iter()
         .filter(|one| !one.program.is_named() && !pays(one, &all))
@@ -423,8 +422,8 @@ fn kept<P: Program>(
 }
 
 /// The name of the noise with the most evidence in one way.
-fn best<P: Program>(way: usize, all: &[Weighed<'_, P>]) -> Option<String> {
-    let more = |a: &&Weighed<'_, P>, b: &&Weighed<'_, P>| {
+fn best(way: usize, all: &[Weighed<'_>]) -> Option<String> {
+    let more = |a: &&Weighed<'_>, b: &&Weighed<'_>| {
         a.logs()[way].total_cmp(&b.logs()[way])
     };
     all.iter().max_by(more).map(|one| one.name.clone())

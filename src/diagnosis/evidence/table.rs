@@ -8,13 +8,12 @@ use super::noises::{Noises, Noisy};
 use crate::error::{Error, Result};
 use crate::infer::Progress;
 use crate::mechanism::{Extent, Mechanism};
-use crate::model::Program;
 use crate::seed::Seed;
 
 /// What the evidence says under one noise.
 #[derive(Debug)]
-pub(crate) struct Row<'a, P> {
-    pub(crate) noisy: Noisy<'a, P>,
+pub(crate) struct Row<'a> {
+    pub(crate) noisy: Noisy<'a>,
     /// ln of the evidence with each mechanism of the catalogue.
     pub(crate) candidates: Vec<f64>,
     /// The same with a force of free form.
@@ -25,21 +24,21 @@ pub(crate) struct Row<'a, P> {
 
 /// What the evidence says under every noise that is kept.
 #[derive(Debug)]
-pub(crate) struct Table<'a, P> {
+pub(crate) struct Table<'a> {
     /// The noises that are kept; the first has all fits.
-    pub(crate) rows: Vec<Row<'a, P>>,
+    pub(crate) rows: Vec<Row<'a>>,
     /// The named noise, where it is not kept.
-    dropped: Option<Noisy<'a, P>>,
+    dropped: Option<Noisy<'a>>,
 }
 
-impl<'a, P: Program> Table<'a, P> {
+impl<'a> Table<'a> {
     /// Weighs every mechanism and the free-form force under the likeliest
     /// noise, and what they promise from there under the others.
     ///
     /// # Errors
     /// An improper prior, or a model that fails.
     pub(crate) fn of(
-        noises: Noises<'a, P>,
+        noises: Noises<'a>,
         extent: &Extent,
         catalogue: &[Box<dyn Mechanism>],
         care: Care,
@@ -62,7 +61,7 @@ impl<'a, P: Program> Table<'a, P> {
     }
 
     /// The model as it was, under the noise that it names.
-    pub(crate) fn as_it_was(&self) -> Result<&Noisy<'a, P>> {
+    pub(crate) fn as_it_was(&self) -> Result<&Noisy<'a>> {
         let kept = self.rows.iter().map(|row| &row.noisy);
         let mut all = kept.chain(&self.dropped);
         all.find(|noisy| noisy.is_named()).ok_or_else(no_noise)
@@ -74,7 +73,7 @@ impl<'a, P: Program> Table<'a, P> {
     }
 
     /// The model under the noises of all other rows.
-    pub(crate) fn beside(&self, row: usize) -> Vec<&Noisy<'a, P>> {
+    pub(crate) fn beside(&self, row: usize) -> Vec<&Noisy<'a>> {
         let rows = self.rows.iter().enumerate();
         let others = rows.filter(|(i, _)| *i != row);
         others.map(|(_, other)| &other.noisy).collect()
@@ -133,9 +132,9 @@ fn no_noise() -> Error {
     Error::inference("no noise is kept")
 }
 
-impl<'a, P: Program> Row<'a, P> {
+impl<'a> Row<'a> {
     /// Without mechanisms yet.
-    fn bare(noisy: Noisy<'a, P>) -> Self {
+    fn bare(noisy: Noisy<'a>) -> Self {
         let open = noisy.open.log;
         Self { noisy, candidates: Vec::new(), open, found: None }
     }
@@ -168,7 +167,7 @@ impl<'a, P: Program> Row<'a, P> {
     /// With the evidences of another row, each more by as much as the normal
     /// approximations about the likeliest draws there promise more.
     fn beside(
-        noisy: Noisy<'a, P>,
+        noisy: Noisy<'a>,
         first: &Self,
         catalogue: &[Box<dyn Mechanism>],
         seed: Seed,

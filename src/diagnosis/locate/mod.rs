@@ -23,7 +23,7 @@ use crate::draws::Draws;
 use crate::error::Result;
 use crate::infer::nested::{Effort, Learned, integrated, learn};
 use crate::mechanism::{Extent, Mechanism};
-use crate::model::{Posterior, Program, With};
+use crate::model::{AnyProgram, Posterior, Program, With};
 use crate::physics::forces::Axis;
 use crate::seed::Seed;
 
@@ -53,8 +53,8 @@ const GLANCE: Effort =
 ///
 /// # Errors
 /// A model that fails.
-pub(crate) fn free_fit<P: Program>(
-    program: &P,
+pub(crate) fn free_fit(
+    program: &dyn AnyProgram,
     extent: &Extent,
     force: &FreeForce,
     none: &Fit,
@@ -97,8 +97,8 @@ fn empty(posterior: &Posterior<'_>) -> Result<Draws> {
 ///
 /// # Errors
 /// A model that fails, or one with no density where `none` has it.
-pub fn locate<P: Program>(
-    program: &P,
+pub fn locate(
+    program: &dyn AnyProgram,
     extent: &Extent,
     axis: Axis,
     none: &Fit,
@@ -123,8 +123,8 @@ pub(crate) struct Outlook {
 ///
 /// # Errors
 /// As [`locate`].
-pub(crate) fn outlook<P: Program>(
-    program: &P,
+pub(crate) fn outlook(
+    program: &dyn AnyProgram,
     extent: &Extent,
     owns: &[Vec<f64>],
     seed: Seed,
@@ -155,8 +155,8 @@ pub(crate) fn outlook<P: Program>(
 ///
 /// # Errors
 /// As [`locate`].
-pub(crate) fn left<P: Program>(
-    program: &P,
+pub(crate) fn left(
+    program: &dyn AnyProgram,
     mechanisms: &[&dyn Mechanism],
     fit: &Fit,
     extent: &Extent,
@@ -171,8 +171,8 @@ pub(crate) fn left<P: Program>(
 ///
 /// # Errors
 /// As [`locate`].
-pub(crate) fn locate_all<P: Program>(
-    program: &P,
+pub(crate) fn locate_all(
+    program: &dyn AnyProgram,
     extent: &Extent,
     axes: &[Axis],
     none: &Fit,
@@ -180,7 +180,7 @@ pub(crate) fn locate_all<P: Program>(
 ) -> Result<Vec<FreeForce>> {
     let forms: Vec<FreeForm> =
         axes.iter().map(|axis| FreeForm::cells(extent, *axis)).collect();
-    let with: Vec<With<'_, P>> =
+    let with: Vec<With<'_>> =
         forms.iter().map(|form| With::new(program, &[form])).collect();
     let posteriors = with.iter().map(|with| Posterior::new(with));
     let posteriors = posteriors.collect::<Result<Vec<_>>>()?;

@@ -16,7 +16,7 @@ use crate::draws::{Draws, log_sum_exp};
 use crate::error::Result;
 use crate::infer::nested::{Effort, integrated, learn};
 use crate::mechanism::Extent;
-use crate::model::{Posterior, Program, With};
+use crate::model::{AnyProgram, Posterior, Program, With};
 use crate::physics::forces::Axis;
 use crate::seed::Seed;
 
@@ -31,8 +31,8 @@ const EFFORT: Effort =
 ///
 /// # Errors
 /// A model that fails.
-pub(crate) fn own_draws<P: Program>(
-    program: &P,
+pub(crate) fn own_draws(
+    program: &dyn AnyProgram,
     extent: &Extent,
     forces: &[FreeForce],
     seed: Seed,
@@ -64,8 +64,8 @@ pub(crate) fn own_draws<P: Program>(
 
 /// So many draws of the model's own parameters, on the real line, with a force
 /// along one axis, from where it is best without its level.
-fn with_level<P: Program>(
-    program: &P,
+fn with_level(
+    program: &dyn AnyProgram,
     extent: &Extent,
     (axis, looks): (Axis, &[Look]),
     count: usize,
