@@ -1,5 +1,5 @@
 //! The language: what `model!` accepts, and what it makes of it. What it
-//! refuses is tested with the macro, in macros/tests.
+//! refuses is tested by the package in tests/mistakes.
 
 mod accepted;
 
