@@ -7,7 +7,7 @@ use crate::diagnosis::evidence::edges::on_line;
 use crate::draws::Draws;
 use crate::error::{Error, Result};
 use crate::infer::{
-    Backend, Frozen, Inference, LaplaceMixture, Precision, Quiet,
+    Backend, Frozen, Inference, LaplaceMixture, Precision, Quiet, climb,
 };
 use crate::mechanism::{Mechanism, Unknown};
 use crate::model::{AnyProgram, Point, Posterior, Program, With};
@@ -23,7 +23,7 @@ pub struct Fit {
     pub se: f64,
     /// Posterior draws as named, the mechanisms' parameters first.
     pub draws: Draws,
-    /// The likeliest draw, on the real line.
+    /// The peak that the likeliest draw leads to, on the real line.
     pub best: Vec<f64>,
     /// How many parameters the mechanisms have.
     pub added: usize,
@@ -188,11 +188,19 @@ fn fit_of(
     Ok(Fit {
         log_evidence: evidence.log,
         se: evidence.se,
-        best: likeliest(posterior, &draws)?,
+        best: peak(posterior, &draws)?,
         draws,
         added,
         warnings: found.warnings,
     })
+}
+
+/// Where a climb from the likeliest draw leads, on the real line: searches that
+/// begin there must not hang on which draws were made.
+fn peak(posterior: &Posterior<'_>, draws: &Draws) -> Result<Vec<f64>> {
+    let likeliest = likeliest(posterior, draws)?;
+    let peak = climb(posterior, &likeliest)?;
+    Ok(peak.map_or(likeliest, |peak| peak.line.as_slice().to_vec()))
 }
 
 /// The draw with the highest density, on the real line.
