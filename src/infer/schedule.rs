@@ -97,7 +97,7 @@ impl Schedule {
 impl Default for Schedule {
     fn default() -> Self {
         Self {
-            promising: 200,
+            promising: 80,
             surveyed: 200,
             climbed: 40,
             profiled: 4,
@@ -114,7 +114,7 @@ impl Default for Schedule {
             estimates: 2,
             moved: 400,
             reached_share: 0.05,
-            error: 0.05,
+            error: 0.045,
             final_draws: (1000, 16_000),
             particles: 800,
         }

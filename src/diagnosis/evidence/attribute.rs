@@ -2,6 +2,7 @@
 //! together.
 
 use rayon::prelude::*;
+use statrs::statistics::Statistics;
 
 use super::fit::{Fit, Prospect, fit, prospect, spread};
 use super::grids::even_grids;
@@ -125,13 +126,9 @@ pub(crate) fn attribute_beside(
     };
     let owns = Owns::of(program, &none, &forces)?;
     progress.begin("weighing mechanisms", Some(catalogue.len() as u64));
-    let weighing = Weighing { program, catalogue, care, seed };
-    let candidates =
-        weighing.weighed(none.log_evidence, progress, |i, seed| {
-            let known = places.get(i).map_or(&[][..], Vec::as_slice);
-            let mechanism = catalogue[i].as_ref();
-            single(program, mechanism, (&owns, known), care, seed)
-        })?;
+    let known = Known { places, care };
+    let weighing = Weighing { program, catalogue, known, seed };
+    let candidates = weighing.weighed(none.log_evidence, owns, progress)?;
     Ok(Attribution { none, forces, candidates })
 }
 
@@ -144,11 +141,14 @@ pub(crate) struct Known<'k> {
     pub(crate) care: Care,
 }
 
+/// Of how many unknowns mechanisms are looked at first.
+const FEW_UNKNOWNS: usize = 2;
+
 /// Mechanisms that are weighed one by one, in parallel.
 struct Weighing<'a> {
     program: &'a dyn AnyProgram,
     catalogue: &'a [Box<dyn Mechanism>],
-    care: Care,
+    known: Known<'a>,
     seed: Seed,
 }
 
@@ -157,36 +157,64 @@ impl Weighing<'_> {
         self.seed.child(1 + i as u64)
     }
 
-    /// The fit of each, from what a look at it finds, beside an evidence that
-    /// is known.
+    /// The fit of each, beside an evidence that is known.
     fn weighed(
         &self,
         known: f64,
+        owns: Owns,
         progress: &dyn Progress,
-        look: impl Fn(usize, Seed) -> Result<Prospect> + Sync,
     ) -> Result<Vec<Fit>> {
-        let looked = self.looked(progress, look)?;
-        let pursued = match self.care.is_quick {
+        let looked = self.looked(known, owns, progress)?;
+        let pursued = match self.known.care.is_quick {
             true => looked,
             false => self.pursued(looked, known)?,
         };
         self.fitted(pursued, known)
     }
 
-    /// What a look finds of each.
+    /// What a look finds of each. Those of few unknowns come first: where they
+    /// put the model's own parameters, others begin too. A brake from the start
+    /// on may stand for much of the friction, and no climb from where the model
+    /// has friction alone leads there.
     fn looked(
         &self,
+        known: f64,
+        mut owns: Owns,
         progress: &dyn Progress,
-        look: impl Fn(usize, Seed) -> Result<Prospect> + Sync,
     ) -> Result<Vec<Prospect>> {
-        let all = self.catalogue.par_iter().enumerate();
-        all.map(|(i, mechanism)| {
-            let found = look(i, self.seed_of(i))
-                .map_err(|error| error.within(mechanism.name()));
+        let few =
+            |i: &usize| self.catalogue[*i].unknowns().len() <= FEW_UNKNOWNS;
+        let (first, then): (Vec<_>, Vec<_>) =
+            (0..self.catalogue.len()).partition(few);
+        let mut found = self.looked_at(&first, &owns, progress)?;
+        let best = highest(&found, known);
+        owns.meet(&found, best - self.known.care.relevant);
+        found.extend(self.looked_at(&then, &owns, progress)?);
+        let order = first.into_iter().chain(then);
+        let mut all: Vec<_> = order.zip(found).collect();
+        all.sort_by_key(|(i, _)| *i);
+        Ok(all.into_iter().map(|(_, prospect)| prospect).collect())
+    }
+
+    /// The same of some of them.
+    fn looked_at(
+        &self,
+        which: &[usize],
+        owns: &Owns,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Prospect>> {
+        let look = |&i: &usize| {
+            let mechanism = self.catalogue[i].as_ref();
+            let Known { places, care } = self.known;
+            let known = places.get(i).map_or(&[][..], Vec::as_slice);
+            let seed = self.seed_of(i);
+            let found =
+                single(self.program, mechanism, (owns, known), care, seed)
+                    .map_err(|error| error.within(mechanism.name()));
             progress.advance(1);
             found
-        })
-        .collect()
+        };
+        which.par_iter().map(look).collect()
     }
 
     /// The same after learning more, of those that may matter beside an
@@ -196,7 +224,7 @@ impl Weighing<'_> {
         prospects: Vec<Prospect>,
         known: f64,
     ) -> Result<Vec<Prospect>> {
-        let threshold = highest(&prospects, known) - self.care.relevant;
+        let threshold = highest(&prospects, known) - self.known.care.relevant;
         let all = self.catalogue.par_iter().enumerate().zip(prospects);
         all.map(|((i, mechanism), prospect)| {
             let seed = self.seed_of(i).child(3);
@@ -209,9 +237,10 @@ impl Weighing<'_> {
     /// How sharply what has such a prospect is worth estimating beside the
     /// best.
     fn precision(&self, prospect: &Prospect, best: f64) -> Precision {
-        if prospect.may_reach(best - self.care.decisive) {
+        let Care { decisive, relevant, .. } = self.known.care;
+        if prospect.may_reach(best - decisive) {
             Precision::Sharp
-        } else if prospect.may_reach(best - self.care.relevant) {
+        } else if prospect.may_reach(best - relevant) {
             Precision::Fair
         } else {
             Precision::Rough
@@ -255,7 +284,16 @@ struct Owns {
     /// In the tails of each, with nothing added: the memory of the errors,
     /// above all, decides which stretches they hide.
     tails: Vec<Vec<f64>>,
+    /// Where mechanisms of few unknowns have them.
+    met: Vec<Vec<f64>>,
+    /// The standard deviation of each coordinate, with nothing added.
+    widths: Vec<f64>,
 }
+
+/// How many places of the own parameters that mechanisms of few unknowns have
+/// are begun from, and from how many widths on these are places of their own.
+const MET: usize = 4;
+const ELSEWHERE: f64 = 2.0;
 
 impl Owns {
     fn of(
@@ -275,12 +313,43 @@ impl Owns {
         let best = [none.own()].into_iter().chain(open);
         let best = best.map(<[f64]>::to_vec).collect();
         let between = forces.iter().map(FreeForce::middle_of_own).collect();
-        Ok(Self { best, between, tails: tails(drawn) })
+        let (met, widths) = (Vec::new(), widths(&drawn));
+        Ok(Self { best, between, tails: tails(drawn), met, widths })
+    }
+
+    /// Takes in where mechanisms have them, the likeliest first, as far as
+    /// these hold more than a least, in ln.
+    fn meet(&mut self, prospects: &[Prospect], least: f64) {
+        let mut near: Vec<&Prospect> =
+            prospects.iter().filter(|one| one.log() > least).collect();
+        near.sort_by(|a, b| b.log().total_cmp(&a.log()));
+        for own in near.into_iter().filter_map(Prospect::own) {
+            if self.met.len() < MET && self.is_elsewhere(own) {
+                self.met.push(own.to_vec());
+            }
+        }
+    }
+
+    /// Whether no place that is begun from is near.
+    fn is_elsewhere(&self, own: &[f64]) -> bool {
+        let is_far = |known: &Vec<f64>| {
+            let off = own.iter().zip(known).zip(&self.widths);
+            off.into_iter()
+                .any(|((a, b), width)| (a - b).abs() > ELSEWHERE * width)
+        };
+        self.best.iter().chain(&self.met).all(is_far)
     }
 }
 
 /// Of how many draws of the model as it is those in the tails are taken.
 const DRAWN: usize = 400;
+
+/// The standard deviation of each coordinate.
+fn widths(drawn: &[Vec<f64>]) -> Vec<f64> {
+    let count = drawn.first().map_or(0, Vec::len);
+    let of = |i: usize| drawn.iter().map(|line| line[i]).collect::<Vec<_>>();
+    (0..count).map(|i| of(i).std_dev()).collect()
+}
 
 /// The draws near the ends of each coordinate's middle 95 %.
 fn tails(mut drawn: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
@@ -323,9 +392,13 @@ fn single(
         let seed = seed.child(2).child(i as u64);
         space.starts.extend(anywhere(mechanism, &[], own, seed));
     }
+    for (i, own) in owns.met.iter().enumerate() {
+        let seed = seed.child(3).child(i as u64);
+        space.starts.extend(anywhere(mechanism, &[], own, seed));
+    }
     let is_quick = care.is_quick || is_known;
-    let tails = if is_quick { &[][..] } else { &owns.tails };
-    for own in tails {
+    let further = owns.tails.iter().chain(&owns.met);
+    for own in further.filter(|_| !is_quick) {
         let coarse = edge_grids(&posterior, mechanism, &[], own, COARSE)?;
         space.grids.extend(coarse);
     }

@@ -50,12 +50,21 @@ pub(crate) struct Prospect {
     /// A proposal for all coordinates; several events have each their own.
     frozen: Option<Frozen>,
     log: f64,
+    /// How many parameters the mechanisms have.
+    added: usize,
 }
 
 impl Prospect {
     /// About ln of the evidence.
     pub(crate) fn log(&self) -> f64 {
         self.log
+    }
+
+    /// Where most of it has the model's own parameters, on the real line; not
+    /// of several events.
+    pub(crate) fn own(&self) -> Option<&[f64]> {
+        let frozen = self.frozen.as_ref()?;
+        Some(&frozen.mixture.heaviest()?[self.added..])
     }
 
     /// Whether what it holds may be above a threshold, in ln.
@@ -148,13 +157,15 @@ pub(crate) fn prospect(
     let posterior = Posterior::new(&with)?;
     if program.events() > 1 {
         let log = backend.outlook(&posterior, seed)?;
-        return Ok(Prospect { backend, frozen: None, log });
+        let (frozen, added) = (None, with.added());
+        return Ok(Prospect { backend, frozen, log, added });
     }
     let found = backend.searched(&posterior, seed.child(0))?;
     let (schedule, seed) = (&backend.schedule, seed.child(1));
     let frozen = found.learned(&posterior, schedule, FEW_ROUNDS, seed)?;
     let log = frozen.log;
-    Ok(Prospect { backend, frozen: Some(frozen), log })
+    let (frozen, added) = (Some(frozen), with.added());
+    Ok(Prospect { backend, frozen, log, added })
 }
 
 /// Fits a program with mechanisms, looking for modes as told.

@@ -23,11 +23,12 @@ pub(crate) const SAYS: &str =
 /// What it adds to the equation of motion.
 pub(crate) const FORMULA: &str = "+ f(s), f free";
 
-/// A force of free form, in [`CELLS`] cells along an axis.
+/// A force of free form, in cells along an axis.
 #[derive(Debug, Clone)]
 pub(super) struct FreeForm {
     extent: Extent,
     axis: Axis,
+    cells: usize,
     /// What makes the cells' values of the unknowns; `None` where these are
     /// the values themselves.
     factor: Option<DMatrix<f64>>,
@@ -45,18 +46,19 @@ pub(super) fn range(extent: &Extent, axis: Axis) -> Range {
 impl FreeForm {
     /// Independent cells, each standard normal beforehand \[m/s2\]: any
     /// process's force is one of these.
-    pub(super) fn cells(extent: &Extent, axis: Axis) -> Self {
-        Self { extent: *extent, axis, factor: None }
+    pub(super) fn cells(extent: &Extent, axis: Axis, cells: usize) -> Self {
+        Self { extent: *extent, axis, cells, factor: None }
     }
 
-    /// The force of a process, as independent waves.
+    /// The force of a process, as independent waves, one for each of
+    /// [`CELLS`] cells.
     pub(super) fn new(
         extent: &Extent,
         axis: Axis,
         process: Process,
     ) -> Result<Self> {
-        let factor = Some(process.factor(extent)?);
-        Ok(Self { extent: *extent, axis, factor })
+        let factor = Some(process.whole_factor(extent)?);
+        Ok(Self { extent: *extent, axis, cells: CELLS, factor })
     }
 
     /// The waves that make a force.
@@ -87,7 +89,7 @@ impl Candidate for FreeForm {
     }
 
     fn unknowns(&self) -> Vec<Unknown> {
-        (0..CELLS)
+        (0..self.cells)
             .map(|i| {
                 let prior = AnyPrior::Normal(0.0, 1.0);
                 Unknown::amplitude(format!("wave[{}]", i + 1), "1", prior)
@@ -104,7 +106,7 @@ impl Missing for FreeForm {
     fn change<K: Kind>(&self, values: &[Real<K>]) -> Change<K> {
         let cells: List<Real<K>> = match &self.factor {
             None => values.iter().copied().collect(),
-            Some(factor) => (0..CELLS)
+            Some(factor) => (0..self.cells)
                 .map(|i| {
                     let row = values[..=i].iter().enumerate();
                     row.map(|(j, x)| *x * factor[(i, j)]).sum()

@@ -23,6 +23,8 @@ const KEPT: usize = 8;
 const FREEDOM: f64 = 10.0;
 /// From how many looks a start is taken.
 const NEAREST: usize = 3;
+/// How far below the highest peak, in ln, a place counts for nothing.
+const DEEP: f64 = 12.0;
 /// By how much, in ln, the weight of a draw must exceed what a normal
 /// approximation holds to show that there is better, and how often that is
 /// looked for.
@@ -35,9 +37,11 @@ pub(super) struct Marginal<'a, 'm> {
     pub(super) sought: Sought<'a, 'm>,
     /// Where the force is known to be best.
     pub(super) looks: Vec<Look>,
+    /// ln of a density below which a place counts for nothing.
+    least: f64,
     /// Whether several events share the force: what is likely is rougher
     /// then, for the ground bends at the points of every track.
-    pub(super) shared: bool,
+    shared: bool,
 }
 
 impl Outer for Marginal<'_, '_> {
@@ -47,8 +51,9 @@ impl Outer for Marginal<'_, '_> {
     fn held(&self, z: &[f64], seed: Seed) -> Result<Held<Self::Rest>> {
         let (process, own) = Process::parted(z);
         let own = DVector::from_column_slice(own);
-        let factor = self.sought.factor(&process)?;
-        let ridge = Ridge { cells: self.sought.cells, factor: &factor };
+        let factor = self.sought.factor(&process);
+        let least = self.least - process.log_prior();
+        let ridge = Ridge { cells: self.sought.cells, factor: &factor, least };
         let Some(from) = self.start(&process, &own, &factor) else {
             return Ok(Held::nothing());
         };
@@ -74,7 +79,18 @@ impl Outer for Marginal<'_, '_> {
     }
 }
 
-impl Marginal<'_, '_> {
+impl<'a, 'm> Marginal<'a, 'm> {
+    /// With a force that several events may share.
+    pub(super) fn new(
+        sought: Sought<'a, 'm>,
+        looks: Vec<Look>,
+        shared: bool,
+    ) -> Self {
+        let heights = looks.iter().map(|look| look.height);
+        let least = heights.fold(f64::NEG_INFINITY, f64::max) - DEEP;
+        Self { sought, looks, least, shared }
+    }
+
     /// The tangent to start from: of the nearest looks the one that promises
     /// most.
     fn start(
@@ -90,7 +106,7 @@ impl Marginal<'_, '_> {
         let promise = |look: &Look| {
             let waves = look.tangent.waves(factor, own);
             waves.map_or(f64::NEG_INFINITY, |waves| {
-                look.tangent.marginal(factor, &waves).height
+                look.tangent.height(factor, &waves)
             })
         };
         let nearest = near.into_iter().take(NEAREST).map(|(_, look)| look);
@@ -107,7 +123,7 @@ fn outdone(
     rng: &mut Rng,
 ) -> Result<(Tangent, Waves)> {
     let height = |(tangent, waves): &(Tangent, Waves)| {
-        tangent.marginal(ridge.factor, waves).height
+        tangent.height(ridge.factor, waves)
     };
     for _ in 0..AGAIN {
         let (forces, logs) = drawn(ridge, &best.1, own, rng)?;

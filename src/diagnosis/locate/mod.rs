@@ -45,7 +45,9 @@ const EFFORT: Effort =
 /// by so much in ln.
 const FEW: Effort = Effort { last: (60, 60), ..EFFORT };
 const FAR: f64 = 3.0;
-/// The same where only about how much it brings is asked for.
+/// The same where only about how much it brings is asked for, and of how many
+/// cells the force is then: derivatives along half as many take half the time.
+const FEW_CELLS: usize = 24;
 const GLANCE: Effort =
     Effort { learning: 40, rounds: 2, last: (150, 150), ..EFFORT };
 
@@ -129,10 +131,10 @@ pub(crate) fn outlook(
     owns: &[Vec<f64>],
     seed: Seed,
 ) -> Result<Outlook> {
-    let form = FreeForm::cells(extent, Axis::Place);
+    let form = FreeForm::cells(extent, Axis::Place, FEW_CELLS);
     let with = With::new(program, &[&form]);
     let posterior = Posterior::new(&with)?;
-    let sought = Sought::of(&posterior, extent);
+    let sought = Sought::of(&posterior, extent, FEW_CELLS);
     let mut looks: Vec<Look> = Vec::new();
     for own in owns {
         let others = sought.looks(own, COARSE)?;
@@ -144,7 +146,7 @@ pub(crate) fn outlook(
     let own = highest(&looks)
         .map_or_else(Vec::new, |look| look.tangent.own.as_slice().to_vec());
     let mixture = proposal(&looks)?;
-    let marginal = Marginal { sought, looks, shared: program.events() > 1 };
+    let marginal = Marginal::new(sought, looks, program.events() > 1);
     let learned = learn(&marginal, mixture, GLANCE, seed.child(0))?;
     let found = integrated(&marginal, &learned, GLANCE, seed.child(1))?;
     Ok(Outlook { log: found.sum.log, own })
@@ -178,8 +180,8 @@ pub(crate) fn locate_all(
     none: &Fit,
     seed: Seed,
 ) -> Result<Vec<FreeForce>> {
-    let forms: Vec<FreeForm> =
-        axes.iter().map(|axis| FreeForm::cells(extent, *axis)).collect();
+    let form = |axis: &Axis| FreeForm::cells(extent, *axis, CELLS);
+    let forms: Vec<FreeForm> = axes.iter().map(form).collect();
     let with: Vec<With<'_>> =
         forms.iter().map(|form| With::new(program, &[form])).collect();
     let posteriors = with.iter().map(|with| Posterior::new(with));
@@ -189,10 +191,10 @@ pub(crate) fn locate_all(
         .par_iter()
         .enumerate()
         .map(|(i, posterior)| {
-            let sought = Sought::of(posterior, extent);
+            let sought = Sought::of(posterior, extent, CELLS);
             let looks = sought.looks(none.own(), FINE)?;
             let mixture = proposal(&looks)?;
-            let marginal = Marginal { sought, looks, shared };
+            let marginal = Marginal::new(sought, looks, shared);
             let seed = seed.child(i as u64).child(0);
             let learned = learn(&marginal, mixture, EFFORT, seed)?;
             Ok((marginal, learned))

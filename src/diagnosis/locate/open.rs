@@ -12,6 +12,7 @@ use super::force::FreeForce;
 use super::free_form::FreeForm;
 use super::look::{Look, Sought, proposal};
 use super::marginal::Marginal;
+use super::process::CELLS;
 use crate::draws::{Draws, log_sum_exp};
 use crate::error::Result;
 use crate::infer::nested::{Effort, integrated, learn};
@@ -71,14 +72,14 @@ fn with_level(
     count: usize,
     seed: Seed,
 ) -> Result<Vec<Vec<f64>>> {
-    let form = FreeForm::cells(extent, axis);
+    let form = FreeForm::cells(extent, axis, CELLS);
     let with = With::new(program, &[&form]);
     let posterior = Posterior::new(&with)?;
-    let mut sought = Sought::of(&posterior, extent);
+    let mut sought = Sought::of(&posterior, extent, CELLS);
     sought.has_level = true;
     let looks = sought.looks_from(looks)?;
     let mixture = proposal(&looks)?;
-    let marginal = Marginal { sought, looks, shared: program.events() > 1 };
+    let marginal = Marginal::new(sought, looks, program.events() > 1);
     let learned = learn(&marginal, mixture, EFFORT, seed.child(0))?;
     let found = integrated(&marginal, &learned, EFFORT, seed.child(1))?;
     let drawn = found.spread(count, seed.child(2)).into_iter();

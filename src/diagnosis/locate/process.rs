@@ -1,6 +1,6 @@
 //! The Gaussian process that a free-form force is drawn from beforehand.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::error::{Error, Result};
@@ -48,18 +48,26 @@ impl Process {
         (self.0 - other.0).powi(2) + (self.1 - other.1).powi(2)
     }
 
-    /// L with force = L w, w independent standard normal waves. Its length
-    /// stands for as large a part of the run on axes other than distance.
-    pub(super) fn factor(&self, extent: &Extent) -> Result<DMatrix<f64>> {
-        let (length, size) = (self.length(), self.size());
-        let step = extent.run / CELLS as f64;
-        let covariance = DMatrix::from_fn(CELLS, CELLS, |i, j| {
-            let apart = (i as f64 - j as f64) * step / length;
-            let nugget = if i == j { 1e-6 } else { 0.0 };
-            size * size * ((-0.5 * apart * apart).exp() + nugget)
-        });
-        let factor = covariance.cholesky().map(|factor| factor.unpack());
-        factor.ok_or_else(|| Error::inference("no such Gaussian process"))
+    /// How any two of so many cells go together beforehand, the size being 1.
+    /// Its length stands for as large a part of the run on axes other than
+    /// distance.
+    fn correlation(&self, extent: &Extent, cells: usize) -> DMatrix<f64> {
+        let step = extent.run / cells as f64 / self.length();
+        DMatrix::from_fn(cells, cells, |i, j| {
+            let apart = (i as f64 - j as f64) * step;
+            (-0.5 * apart * apart).exp()
+        })
+    }
+
+    /// L with force = L w, w independent standard normal waves: as few as make
+    /// all of the force but a hundredth of its size. A smooth force has far
+    /// fewer waves than cells.
+    pub(super) fn factor(
+        &self,
+        extent: &Extent,
+        cells: usize,
+    ) -> DMatrix<f64> {
+        pivoted(&self.correlation(extent, cells)) * self.size()
     }
 
     /// The same with one wave more: a force that is the same along the whole
@@ -67,7 +75,71 @@ impl Process {
     pub(super) fn factor_with_level(
         &self,
         extent: &Extent,
+        cells: usize,
+    ) -> DMatrix<f64> {
+        let factor = self.factor(extent, cells);
+        let waves = factor.ncols();
+        factor.insert_column(waves, self.size())
+    }
+
+    /// The same of [`CELLS`] cells with as many waves, so that these make any
+    /// force: L is lower triangular.
+    pub(super) fn whole_factor(
+        &self,
+        extent: &Extent,
     ) -> Result<DMatrix<f64>> {
-        Ok(self.factor(extent)?.insert_column(CELLS, self.size()))
+        let mut correlation = self.correlation(extent, CELLS);
+        correlation.fill_diagonal(1.0 + 1e-6);
+        let factor = correlation.cholesky().map(|factor| factor.unpack());
+        let missing = || Error::inference("no such Gaussian process");
+        Ok(factor.ok_or_else(missing)? * self.size())
+    }
+}
+
+/// The share of its variance that a cell's force may lack.
+const LACKING: f64 = 1e-4;
+
+/// L with L L' about a matrix of correlations: Cholesky's factor, the
+/// coordinate with the most variance left first, until none has more than a
+/// little (Harbrecht, Peters, Schneider 2012).
+fn pivoted(correlation: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut left = correlation.diagonal();
+    let mut columns: Vec<DVector<f64>> = Vec::new();
+    while columns.len() < left.len() {
+        let (pivot, variance) = left.argmax();
+        if variance < LACKING {
+            break;
+        }
+        let mut column = correlation.column(pivot).into_owned();
+        for known in &columns {
+            column.axpy(-known[pivot], known, 1.0);
+        }
+        column /= variance.sqrt();
+        left -= column.component_mul(&column);
+        columns.push(column);
+    }
+    DMatrix::from_columns(&columns)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_waves_make_nearly_all_of_the_force() {
+        let extent = Extent { run: 200.0, ..Extent::EVERYTHING };
+        for (length, fewest, most) in
+            [(-2.0, 38, 40), (0.0, 10, 20), (3.0, 2, 5)]
+        {
+            let process = Process(length, 0.7);
+            let factor = process.factor(&extent, CELLS);
+            let waves = factor.ncols();
+            assert!((fewest..=most).contains(&waves), "{length}: {waves}");
+            let whole =
+                process.correlation(&extent, CELLS) * process.size().powi(2);
+            let lacks = (whole - &factor * factor.transpose()).amax();
+            let tolerated = LACKING * process.size().powi(2);
+            assert!(lacks < tolerated, "{length}: {lacks}");
+        }
     }
 }

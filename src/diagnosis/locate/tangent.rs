@@ -10,14 +10,16 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use super::process::CELLS;
 use crate::error::Result;
 use crate::infer::Slope;
 use crate::model::{Information, Point, Posterior};
 
-/// A model with a force of independent cells, which come first.
+/// A model with a force of so many independent cells, which come first.
 #[derive(Clone, Copy)]
-pub(super) struct Cells<'a, 'm>(pub(super) &'a Posterior<'m>);
+pub(super) struct Cells<'a, 'm> {
+    pub(super) posterior: &'a Posterior<'m>,
+    pub(super) count: usize,
+}
 
 impl Cells<'_, '_> {
     /// ln p(own, data | force).
@@ -27,7 +29,7 @@ impl Cells<'_, '_> {
         own: &[f64],
     ) -> Result<f64> {
         let line = [force.as_slice(), own].concat();
-        let density = self.0.density(Point::Line(&line))?;
+        let density = self.posterior.density(Point::Line(&line))?;
         Ok(density.on_line() - log_normal(force))
     }
 
@@ -39,7 +41,7 @@ impl Cells<'_, '_> {
         own: DVector<f64>,
     ) -> Result<Option<Tangent>> {
         let line = [force.as_slice(), own.as_slice()].concat();
-        let about = self.0.information(&line)?;
+        let about = self.posterior.information(&line)?;
         let usable = about.density.on_line().is_finite()
             && about.gradient.iter().all(|g| g.is_finite());
         Ok(usable.then(|| Tangent::new(force, own, &about)))
@@ -77,18 +79,18 @@ impl Tangent {
         own: DVector<f64>,
         about: &Information,
     ) -> Self {
-        let n = own.len();
+        let (cells, n) = (force.len(), own.len());
         let view = |at, size| about.precision.view(at, size).into_owned();
-        let one = DMatrix::identity(CELLS, CELLS);
+        let one = DMatrix::identity(cells, cells);
         Self {
             height: about.density.on_line() - log_normal(&force),
             pulls: (
-                about.gradient.rows(0, CELLS) + &force,
-                about.gradient.rows(CELLS, n).into_owned(),
+                about.gradient.rows(0, cells) + &force,
+                about.gradient.rows(cells, n).into_owned(),
             ),
-            of_force: view((0, 0), (CELLS, CELLS)) - one,
-            across: view((0, CELLS), (CELLS, n)),
-            of_own: view((CELLS, CELLS), (n, n)),
+            of_force: view((0, 0), (cells, cells)) - one,
+            across: view((0, cells), (cells, n)),
+            of_own: view((cells, cells), (n, n)),
             force,
             own,
         }
@@ -103,13 +105,28 @@ impl Tangent {
     ) -> Option<Waves> {
         let n = factor.ncols();
         let precision = DMatrix::identity(n, n)
-            + factor.transpose() * (&self.of_force * factor);
+            + factor.tr_mul(&(&self.of_force * factor));
         let precision = precision.cholesky()?;
         let pull = &self.pulls.0 + &self.of_force * &self.force
             - &self.across * (own - &self.own);
         let mean = precision.solve(&factor.tr_mul(&pull));
         let finite = mean.iter().all(|x| x.is_finite());
         finite.then_some(Waves { mean, precision })
+    }
+
+    /// ln p(own, data) at the own parameters that the waves are best at, the
+    /// force integrated.
+    pub(super) fn height(&self, factor: &DMatrix<f64>, waves: &Waves) -> f64 {
+        self.height_off(&(factor * &waves.mean - &self.force), waves)
+    }
+
+    /// The same, the best force being so far off the tangent's.
+    fn height_off(&self, off: &DVector<f64>, waves: &Waves) -> f64 {
+        let bend = off.dot(&(&self.of_force * off));
+        self.height + self.pulls.0.dot(off)
+            - 0.5 * bend
+            - 0.5 * waves.mean.norm_squared()
+            - half_log_det(&waves.precision)
     }
 
     /// ln p(own, data), the force integrated, about the tangent's own
@@ -121,15 +138,11 @@ impl Tangent {
         waves: &Waves,
     ) -> Slope {
         let off = factor * &waves.mean - &self.force;
-        let bend = off.dot(&(&self.of_force * &off));
-        let height = self.height + self.pulls.0.dot(&off)
-            - 0.5 * bend
-            - 0.5 * waves.mean.norm_squared()
-            - half_log_det(&waves.precision);
-        let across = factor.transpose() * &self.across;
+        let height = self.height_off(&off, waves);
+        let across = factor.tr_mul(&self.across);
         let follows = waves.precision.solve(&across);
         let gradient = &self.pulls.1 - self.across.tr_mul(&off);
-        let precision = &self.of_own - across.transpose() * &follows;
+        let precision = &self.of_own - across.tr_mul(&follows);
         Slope { height, gradient, precision }
     }
 }

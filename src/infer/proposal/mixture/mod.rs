@@ -204,6 +204,14 @@ impl Mixture {
         Some(Self { components })
     }
 
+    /// The middle of the component with the most weight.
+    pub(crate) fn heaviest(&self) -> Option<&[f64]> {
+        let by_weight =
+            |a: &&Component, b: &&Component| a.weight.total_cmp(&b.weight);
+        let heaviest = self.components.iter().max_by(by_weight)?;
+        Some(heaviest.mean.as_slice())
+    }
+
     /// How many components it has.
     pub fn components(&self) -> usize {
         self.components.len()
