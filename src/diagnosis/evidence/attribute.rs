@@ -2,10 +2,10 @@
 //! together.
 
 use rayon::prelude::*;
-use statrs::statistics::Statistics;
 
 use super::fit::{Fit, Prospect, fit, prospect, spread};
 use super::grids::even_grids;
+use super::owns::Owns;
 use super::screen::{COARSE, FINE, Mesh, edge_grids};
 use crate::diagnosis::locate::{FreeForce, locate_all};
 use crate::draws::log_sum_exp;
@@ -187,8 +187,9 @@ impl Weighing<'_> {
         let (first, then): (Vec<_>, Vec<_>) =
             (0..self.catalogue.len()).partition(few);
         let mut found = self.looked_at(&first, &owns, progress)?;
-        let best = highest(&found, known);
-        owns.meet(&found, best - self.known.care.relevant);
+        let least = highest(&found, known) - self.known.care.relevant;
+        let near = found.iter().filter(|one| one.log() > least);
+        owns.meet(near.filter_map(|one| Some((one.log(), one.own()?))));
         found.extend(self.looked_at(&then, &owns, progress)?);
         let order = first.into_iter().chain(then);
         let mut all: Vec<_> = order.zip(found).collect();
@@ -270,98 +271,6 @@ impl Weighing<'_> {
 /// The most evidence, in ln, that any promises or that is known.
 fn highest(prospects: &[Prospect], known: f64) -> f64 {
     prospects.iter().map(Prospect::log).fold(known, f64::max)
-}
-
-/// Where the model's own parameters begin.
-struct Owns {
-    /// At their best with nothing added, where errors may explain what is
-    /// missing, and at their best with a force of free form, where it does.
-    best: Vec<Vec<f64>>,
-    /// In the middle of what they are with the force along each axis: between
-    /// its peaks, where a mechanism that is like the force at neither has its
-    /// own.
-    between: Vec<Vec<f64>>,
-    /// In the tails of each, with nothing added: the memory of the errors,
-    /// above all, decides which stretches they hide.
-    tails: Vec<Vec<f64>>,
-    /// Where mechanisms of few unknowns have them.
-    met: Vec<Vec<f64>>,
-    /// The standard deviation of each coordinate, with nothing added.
-    widths: Vec<f64>,
-}
-
-/// How many places of the own parameters that mechanisms of few unknowns have
-/// are begun from, and from how many widths on these are places of their own.
-const MET: usize = 4;
-const ELSEWHERE: f64 = 2.0;
-
-impl Owns {
-    fn of(
-        program: &dyn AnyProgram,
-        none: &Fit,
-        forces: &[FreeForce],
-    ) -> Result<Self> {
-        let with = With::new(program, &[]);
-        let posterior = Posterior::new(&with)?;
-        let likely = forces
-            .iter()
-            .max_by(|a, b| a.log_bayes_factor.total_cmp(&b.log_bayes_factor));
-        let open = likely.and_then(FreeForce::likeliest_own);
-        let rows = none.draws.thinned(DRAWN).into_iter();
-        let drawn: Vec<Vec<f64>> =
-            rows.map(|row| posterior.line(row)).collect::<Result<_>>()?;
-        let best = [none.own()].into_iter().chain(open);
-        let best = best.map(<[f64]>::to_vec).collect();
-        let between = forces.iter().map(FreeForce::middle_of_own).collect();
-        let (met, widths) = (Vec::new(), widths(&drawn));
-        Ok(Self { best, between, tails: tails(drawn), met, widths })
-    }
-
-    /// Takes in where mechanisms have them, the likeliest first, as far as
-    /// these hold more than a least, in ln.
-    fn meet(&mut self, prospects: &[Prospect], least: f64) {
-        let mut near: Vec<&Prospect> =
-            prospects.iter().filter(|one| one.log() > least).collect();
-        near.sort_by(|a, b| b.log().total_cmp(&a.log()));
-        for own in near.into_iter().filter_map(Prospect::own) {
-            if self.met.len() < MET && self.is_elsewhere(own) {
-                self.met.push(own.to_vec());
-            }
-        }
-    }
-
-    /// Whether no place that is begun from is near.
-    fn is_elsewhere(&self, own: &[f64]) -> bool {
-        let is_far = |known: &Vec<f64>| {
-            let off = own.iter().zip(known).zip(&self.widths);
-            off.into_iter()
-                .any(|((a, b), width)| (a - b).abs() > ELSEWHERE * width)
-        };
-        self.best.iter().chain(&self.met).all(is_far)
-    }
-}
-
-/// Of how many draws of the model as it is those in the tails are taken.
-const DRAWN: usize = 400;
-
-/// The standard deviation of each coordinate.
-fn widths(drawn: &[Vec<f64>]) -> Vec<f64> {
-    let count = drawn.first().map_or(0, Vec::len);
-    let of = |i: usize| drawn.iter().map(|line| line[i]).collect::<Vec<_>>();
-    (0..count).map(|i| of(i).std_dev()).collect()
-}
-
-/// The draws near the ends of each coordinate's middle 95 %.
-fn tails(mut drawn: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
-    let coordinates = drawn.first().map_or(0, Vec::len);
-    let low = drawn.len() / 40;
-    let high = drawn.len().saturating_sub(1 + low);
-    (0..coordinates)
-        .flat_map(|i| {
-            drawn.sort_by(|a, b| a[i].total_cmp(&b[i]));
-            [drawn[low].clone(), drawn[high].clone()]
-        })
-        .collect()
 }
 
 /// Looks at a single mechanism, from places that are known to be likely, and

@@ -9,5 +9,6 @@ pub(crate) mod fit;
 mod grids;
 pub(crate) mod noises;
 mod others;
+mod owns;
 mod screen;
 pub(crate) mod table;
