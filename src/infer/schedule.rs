@@ -1,6 +1,7 @@
 //! The thresholds of the engine, each with its reason.
 //!
-//! docs/engine.md has a study of five events that they are held against:
+//! docs/record/thresholds.md has what others do, and docs/engine.md a study of
+//! six events that they are held against:
 //! `cargo run --release --example 13_evidence_repeats` makes it again.
 
 /// How the Laplace mixture searches, learns, and is judged.
