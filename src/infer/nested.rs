@@ -12,7 +12,9 @@ use rayon::prelude::*;
 
 use super::adapt::{fitted, reweighted};
 use super::proposal::{Base, Mixture, Particle};
-use super::weights::{Sum, cut, log_mean_weight, quality, summed, systematic};
+use super::weights::{
+    Sum, capped, cut, log_mean_weight, quality, summed, systematic,
+};
 use crate::error::Result;
 use crate::model::Posterior;
 use crate::seed::{Rng, Seed};
@@ -131,7 +133,7 @@ pub(crate) fn learn<O: Outer>(
 /// simulations, and one round of reweighting gains most.
 const GOOD: f64 = 0.25;
 
-/// The evidence from fresh draws.
+/// The evidence from fresh draws, their weights capped.
 ///
 /// # Errors
 /// No draw with a positive density, or a model that fails.
@@ -147,7 +149,8 @@ pub(crate) fn integrated<O: Outer>(
     let count = needed.clamp(fewest, most);
     let found = drawn(outer, &learned.mixture, count, seed)?;
     let particles: Vec<Particle> = found.iter().map(|f| f.0.clone()).collect();
-    Ok(Integral { sum: summed(&particles)?, found })
+    // Each weight is an estimate, and one far too high would be all.
+    Ok(Integral { sum: summed(&capped(&particles))?, found })
 }
 
 /// Draws of the outer coordinates, each with what the others hold there.

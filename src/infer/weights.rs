@@ -28,6 +28,18 @@ pub(in crate::infer) fn cut(found: &[Particle]) -> Vec<f64> {
     cut.into_iter().map(|w| w / total).collect()
 }
 
+/// Particles with no weight above the square root of their number times the
+/// mean: of few draws one that weighs more than all others would make the sum,
+/// and the sum so scatters less (Ionides 2008).
+pub(in crate::infer) fn capped(found: &[Particle]) -> Vec<Particle> {
+    let most = log_mean_weight(found) + 0.5 * (found.len() as f64).ln();
+    let cap = |one: &Particle| match one.log_weight() > most {
+        true => Particle::new(one.z.clone(), one.base, one.base + most),
+        false => one.clone(),
+    };
+    found.iter().map(cap).collect()
+}
+
 /// Their importance weights, adding up to 1.
 pub(in crate::infer) fn normalised(particles: &[Particle]) -> Vec<f64> {
     let logs = particles.iter().map(Particle::log_weight);
@@ -196,6 +208,22 @@ mod tests {
         close(found[0], 0.01 / total);
         close(found[8], 1.0 / 3.0 / total);
         close(found.iter().sum(), 1.0);
+    }
+
+    #[test]
+    fn a_weight_above_the_root_is_capped() {
+        // Of nine with a mean of 4, at most 12; what has no density has none.
+        let mut weights = [1.0; 9];
+        weights[8] = 28.0;
+        let found = capped(&draws(&weights, -2000.0));
+        close(log_mean_weight(&found), (20.0_f64 / 9.0).ln() - 2000.0);
+        close(found[8].log_weight(), 12.0_f64.ln() - 2000.0);
+        assert_eq!(found[8].z, [0.0]);
+        let nothing = capped(&[Particle::without_density(1)]);
+        assert_eq!(nothing[0].log_weight(), f64::NEG_INFINITY);
+        // Even weights are as they were.
+        let even = capped(&draws(&[2.0; 4], 0.0));
+        close(log_mean_weight(&even), 2.0_f64.ln());
     }
 
     #[test]
