@@ -45,11 +45,12 @@ const EFFORT: Effort =
 /// by so much in ln.
 const FEW: Effort = Effort { last: (60, 60), ..EFFORT };
 const FAR: f64 = 3.0;
-/// The same where only about how much it brings is asked for, and of how many
-/// cells the force is then: derivatives along half as many take half the time.
-const FEW_CELLS: usize = 24;
+/// The same where only about how much it brings is asked for.
 const GLANCE: Effort =
     Effort { learning: 40, rounds: 2, last: (150, 150), ..EFFORT };
+/// Of how many cells the force is then: derivatives along these and the model's
+/// own parameters take two passes instead of three, and half the time.
+const FEW_CELLS: usize = 24;
 
 /// The free-form force as a mechanism of its own, with the fit that it has.
 ///
