@@ -12,9 +12,7 @@ use rayon::prelude::*;
 
 use super::adapt::{fitted, reweighted};
 use super::proposal::{Base, Mixture, Particle};
-use super::weights::{
-    Sum, capped, cut, log_mean_weight, quality, summed, systematic,
-};
+use super::weights::{Sum, log_mean_weight, quality, summed_cut};
 use crate::error::Result;
 use crate::model::Posterior;
 use crate::seed::{Rng, Seed};
@@ -90,13 +88,11 @@ impl<R> Integral<R> {
         whole.collect()
     }
 
-    /// So many even draws of the outer coordinates by weights that are cut:
-    /// where few draws weigh most, these say how wide they lie, and lean to
-    /// the proposal, which is wider.
+    /// So many even draws of the outer coordinates. Where few draws weigh most,
+    /// weights that are cut say how wide they lie, and lean to the proposal,
+    /// which is wider.
     pub(crate) fn spread(&self, count: usize, seed: Seed) -> Vec<&[f64]> {
-        let all = self.found.iter().map(|(particle, _)| particle.clone());
-        let weights = cut(&all.collect::<Vec<_>>());
-        let chosen = systematic(&weights, count, &mut seed.rng()).into_iter();
+        let chosen = self.sum.even(count, seed).into_iter();
         chosen.map(|i| &self.found[i].0.z[..]).collect()
     }
 }
@@ -133,7 +129,7 @@ pub(crate) fn learn<O: Outer>(
 /// simulations, and one round of reweighting gains most.
 const GOOD: f64 = 0.25;
 
-/// The evidence from fresh draws, their weights capped.
+/// The evidence from fresh draws, their weights cut.
 ///
 /// # Errors
 /// No draw with a positive density, or a model that fails.
@@ -150,7 +146,7 @@ pub(crate) fn integrated<O: Outer>(
     let found = drawn(outer, &learned.mixture, count, seed)?;
     let particles: Vec<Particle> = found.iter().map(|f| f.0.clone()).collect();
     // Each weight is an estimate, and one far too high would be all.
-    Ok(Integral { sum: summed(&capped(&particles))?, found })
+    Ok(Integral { sum: summed_cut(&particles)?, found })
 }
 
 /// Draws of the outer coordinates, each with what the others hold there.

@@ -18,31 +18,28 @@ pub(in crate::infer) fn log_mean_weight(particles: &[Particle]) -> f64 {
     log_sum_exp(logs) - (particles.len() as f64).ln()
 }
 
-/// Weights that are cut at the square root of their number times the mean
-/// (Ionides 2008), so that no single draw makes a component.
-pub(in crate::infer) fn cut(found: &[Particle]) -> Vec<f64> {
+/// Shares in the weights, those above the square root of their number times the
+/// mean cut there (Ionides 2008): what is left adds up to less than 1.
+fn below_root(found: &[Particle]) -> impl Iterator<Item = f64> + use<> {
     let most = 1.0 / (found.len() as f64).sqrt();
-    let cut: Vec<f64> =
-        normalised(found).iter().map(|w| w.min(most)).collect();
+    normalised(found).into_iter().map(move |w| w.min(most))
+}
+
+/// Weights that are cut there, adding up to 1, so that no single draw makes a
+/// component.
+pub(in crate::infer) fn cut(found: &[Particle]) -> Vec<f64> {
+    let cut: Vec<f64> = below_root(found).collect();
     let total: f64 = cut.iter().sum();
     cut.into_iter().map(|w| w / total).collect()
 }
 
-/// Particles with no weight above the square root of their number times the
-/// mean: of few draws one that weighs more than all others would make the sum,
-/// and the sum so scatters less (Ionides 2008).
-pub(in crate::infer) fn capped(found: &[Particle]) -> Vec<Particle> {
-    let most = log_mean_weight(found) + 0.5 * (found.len() as f64).ln();
-    let cap = |one: &Particle| match one.log_weight() > most {
-        true => Particle::new(one.z.clone(), one.base, one.base + most),
-        false => one.clone(),
-    };
-    found.iter().map(cap).collect()
-}
-
 /// Their importance weights, adding up to 1.
 pub(in crate::infer) fn normalised(particles: &[Particle]) -> Vec<f64> {
-    let logs = particles.iter().map(Particle::log_weight);
+    shares(particles.iter().map(Particle::log_weight))
+}
+
+/// The share of each in what logarithms add up to.
+fn shares(logs: impl Iterator<Item = f64> + Clone) -> Vec<f64> {
     let total = log_sum_exp(logs.clone());
     logs.map(|l| (l - total).exp()).collect()
 }
@@ -69,26 +66,41 @@ pub(crate) struct Sum {
 impl Sum {
     /// As many even draws as the weights are worth, and a hundred at least.
     pub(crate) fn chosen(&self, seed: Seed) -> Vec<usize> {
-        let count = self.effective.max(100.0) as usize;
+        self.even(self.effective.max(100.0) as usize, seed)
+    }
+
+    /// So many even draws.
+    pub(crate) fn even(&self, count: usize, seed: Seed) -> Vec<usize> {
         systematic(&self.weights, count, &mut seed.rng())
     }
 }
 
 /// The evidence that weighted particles give.
 pub(in crate::infer) fn summed(found: &[Particle]) -> Result<Sum> {
-    let n = found.len() as f64;
-    let logs: Vec<f64> = found.iter().map(Particle::log_weight).collect();
-    let log = log_mean_weight(found);
+    sum(&found.iter().map(Particle::log_weight).collect::<Vec<_>>())
+}
+
+/// The same with weights that are cut: of few draws one that weighs more than
+/// all others would be the sum, which scatters less so.
+pub(in crate::infer) fn summed_cut(found: &[Particle]) -> Result<Sum> {
+    let total = log_mean_weight(found) + (found.len() as f64).ln();
+    sum(&below_root(found).map(|w| w.ln() + total).collect::<Vec<_>>())
+}
+
+/// What logarithms of weights say.
+fn sum(logs: &[f64]) -> Result<Sum> {
+    let n = logs.len() as f64;
+    let log = log_sum_exp(logs.iter().copied()) - n.ln();
     if !log.is_finite() {
         return Err(Error::inference(
             "no draw has a positive density: prior and recording contradict \
              each other",
         ));
     }
-    let weights = normalised(found);
+    let weights = shares(logs.iter().copied());
     let effective = 1.0 / weights.iter().map(|w| w * w).sum::<f64>();
     let se = ((n / effective - 1.0) / (n - 1.0)).sqrt();
-    let (_, k) = psis(&logs);
+    let (_, k) = psis(logs);
     let warnings = warn(k, effective, n);
     Ok(Sum { log, se, weights, effective, warnings })
 }
@@ -211,19 +223,19 @@ mod tests {
     }
 
     #[test]
-    fn a_weight_above_the_root_is_capped() {
+    fn a_weight_above_the_root_is_cut_in_the_sum() {
         // Of nine with a mean of 4, at most 12; what has no density has none.
         let mut weights = [1.0; 9];
         weights[8] = 28.0;
-        let found = capped(&draws(&weights, -2000.0));
-        close(log_mean_weight(&found), (20.0_f64 / 9.0).ln() - 2000.0);
-        close(found[8].log_weight(), 12.0_f64.ln() - 2000.0);
-        assert_eq!(found[8].z, [0.0]);
-        let nothing = capped(&[Particle::without_density(1)]);
-        assert_eq!(nothing[0].log_weight(), f64::NEG_INFINITY);
+        let found = draws(&weights, -2000.0);
+        let sum = summed_cut(&found).unwrap();
+        close(sum.log, (20.0_f64 / 9.0).ln() - 2000.0);
+        close(sum.weights[8], 12.0 / 20.0);
+        all_close(&sum.weights, &cut(&found));
+        assert!(summed_cut(&[Particle::without_density(1)]).is_err());
         // Even weights are as they were.
-        let even = capped(&draws(&[2.0; 4], 0.0));
-        close(log_mean_weight(&even), 2.0_f64.ln());
+        let even = summed_cut(&draws(&[2.0; 4], 0.0)).unwrap();
+        close(even.log, 2.0_f64.ln());
     }
 
     #[test]

@@ -126,8 +126,7 @@ pub(crate) fn attribute_beside(
     };
     let owns = Owns::of(program, &none, &forces)?;
     progress.begin("weighing mechanisms", Some(catalogue.len() as u64));
-    let known = Known { places, care };
-    let weighing = Weighing { program, catalogue, known, seed };
+    let weighing = Weighing { program, catalogue, places, care, seed };
     let candidates = weighing.weighed(none.log_evidence, owns, progress)?;
     Ok(Attribution { none, forces, candidates })
 }
@@ -148,7 +147,9 @@ const FEW_UNKNOWNS: usize = 2;
 struct Weighing<'a> {
     program: &'a dyn AnyProgram,
     catalogue: &'a [Box<dyn Mechanism>],
-    known: Known<'a>,
+    /// Likely places with each, where there is a list.
+    places: &'a [Vec<Vec<f64>>],
+    care: Care,
     seed: Seed,
 }
 
@@ -165,7 +166,7 @@ impl Weighing<'_> {
         progress: &dyn Progress,
     ) -> Result<Vec<Fit>> {
         let looked = self.looked(known, owns, progress)?;
-        let pursued = match self.known.care.is_quick {
+        let pursued = match self.care.is_quick {
             true => looked,
             false => self.pursued(looked, known)?,
         };
@@ -187,7 +188,7 @@ impl Weighing<'_> {
         let (first, then): (Vec<_>, Vec<_>) =
             (0..self.catalogue.len()).partition(few);
         let mut found = self.looked_at(&first, &owns, progress)?;
-        let least = highest(&found, known) - self.known.care.relevant;
+        let least = highest(&found, known) - self.care.relevant;
         let near = found.iter().filter(|one| one.log() > least);
         owns.meet(near.filter_map(|one| Some((one.log(), one.own()?))));
         found.extend(self.looked_at(&then, &owns, progress)?);
@@ -206,9 +207,8 @@ impl Weighing<'_> {
     ) -> Result<Vec<Prospect>> {
         let look = |&i: &usize| {
             let mechanism = self.catalogue[i].as_ref();
-            let Known { places, care } = self.known;
-            let known = places.get(i).map_or(&[][..], Vec::as_slice);
-            let seed = self.seed_of(i);
+            let known = self.places.get(i).map_or(&[][..], Vec::as_slice);
+            let (care, seed) = (self.care, self.seed_of(i));
             let found =
                 single(self.program, mechanism, (owns, known), care, seed)
                     .map_err(|error| error.within(mechanism.name()));
@@ -225,7 +225,7 @@ impl Weighing<'_> {
         prospects: Vec<Prospect>,
         known: f64,
     ) -> Result<Vec<Prospect>> {
-        let threshold = highest(&prospects, known) - self.known.care.relevant;
+        let threshold = highest(&prospects, known) - self.care.relevant;
         let all = self.catalogue.par_iter().enumerate().zip(prospects);
         all.map(|((i, mechanism), prospect)| {
             let seed = self.seed_of(i).child(3);
@@ -238,7 +238,7 @@ impl Weighing<'_> {
     /// How sharply what has such a prospect is worth estimating beside the
     /// best.
     fn precision(&self, prospect: &Prospect, best: f64) -> Precision {
-        let Care { decisive, relevant, .. } = self.known.care;
+        let Care { decisive, relevant, .. } = self.care;
         if prospect.may_reach(best - decisive) {
             Precision::Sharp
         } else if prospect.may_reach(best - relevant) {
@@ -297,13 +297,11 @@ fn single(
         let beside = (&[][..], &own[..]);
         space.extend(around(&posterior, mechanism, None, beside, mesh, seed)?);
     }
-    for (i, own) in owns.between.iter().enumerate() {
-        let seed = seed.child(2).child(i as u64);
-        space.starts.extend(anywhere(mechanism, &[], own, seed));
-    }
-    for (i, own) in owns.met.iter().enumerate() {
-        let seed = seed.child(3).child(i as u64);
-        space.starts.extend(anywhere(mechanism, &[], own, seed));
+    for (which, owns) in [(2, &owns.between), (3, &owns.met)] {
+        for (i, own) in owns.iter().enumerate() {
+            let seed = seed.child(which).child(i as u64);
+            space.starts.extend(anywhere(mechanism, &[], own, seed));
+        }
     }
     let is_quick = care.is_quick || is_known;
     let further = owns.tails.iter().chain(&owns.met);

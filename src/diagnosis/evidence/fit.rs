@@ -155,17 +155,16 @@ pub(crate) fn prospect(
 ) -> Result<Prospect> {
     let with = With::new(program, mechanisms);
     let posterior = Posterior::new(&with)?;
+    let added = with.added();
     if program.events() > 1 {
         let log = backend.outlook(&posterior, seed)?;
-        let (frozen, added) = (None, with.added());
-        return Ok(Prospect { backend, frozen, log, added });
+        return Ok(Prospect { backend, frozen: None, log, added });
     }
     let found = backend.searched(&posterior, seed.child(0))?;
     let (schedule, seed) = (&backend.schedule, seed.child(1));
     let frozen = found.learned(&posterior, schedule, FEW_ROUNDS, seed)?;
     let log = frozen.log;
-    let (frozen, added) = (Some(frozen), with.added());
-    Ok(Prospect { backend, frozen, log, added })
+    Ok(Prospect { backend, frozen: Some(frozen), log, added })
 }
 
 /// Fits a program with mechanisms, looking for modes as told.

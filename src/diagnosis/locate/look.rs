@@ -264,10 +264,11 @@ impl Ridge<'_, '_> {
             let Some(tangent) = tangent else { break };
             let Some(next) = tangent.waves(self.factor, own) else { break };
             let gain = next.gain_from(&waves.mean);
-            let most = tangent.height(self.factor, &next) + FURTHER * gain;
+            let most = || tangent.height(self.factor, &next) + FURTHER * gain;
+            let ends = gain < NEARBY || most() < self.least;
             waves.mean.copy_from(&next.mean);
             found = Some((tangent, next));
-            if gain < NEARBY || most < self.least {
+            if ends {
                 break;
             }
         }
