@@ -117,8 +117,9 @@ fn bend<K: Kind>(declaration: &Declaration<'_, K>) -> f64 {
 /// For how many columns room is made at once.
 const RESERVED: usize = 256;
 
-/// How many coordinates a pass takes at the most, of few and of many.
-const MOST: [usize; 2] = [8, 16];
+/// How many coordinates a pass takes at the most. One of 16 takes three
+/// quarters of the time that one of 8 and another of 2 take, at 464 values.
+const MOST: usize = 16;
 
 /// The information of a program at a place on the real line, of some of the
 /// coordinates.
@@ -136,9 +137,8 @@ pub(super) fn information(
         next: 0,
         bends: Vec::new(),
     };
-    let [few, many] = MOST;
     let mut last = None;
-    for (done, wide) in passes(count, if count > many { many } else { few }) {
+    for (done, wide) in passes(count, MOST) {
         (columns.done, columns.next) = (done, 0);
         let (first, slots) =
             (of.start + done, &mut gradient.as_mut_slice()[done..]);

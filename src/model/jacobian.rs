@@ -44,10 +44,10 @@ impl Jacobian {
             self.blocks.resize(begin + self.width, [0.0; BLOCK]);
         }
         let column = &mut self.blocks[begin..begin + self.width];
-        let blocks = column[first / BLOCK..].iter_mut().enumerate();
-        for (k, block) in blocks.take(K::DIRECTIONS.div_ceil(BLOCK)) {
-            *block = std::array::from_fn(|i| x.partial(BLOCK * k + i));
-        }
+        let blocks = column[first / BLOCK..].as_flattened_mut();
+        let partials = x.partials();
+        let count = partials.len().min(blocks.len());
+        blocks[..count].copy_from_slice(&partials[..count]);
     }
 
     /// Keeps so many columns; those that are missing are zero.
@@ -108,9 +108,14 @@ impl Jacobian {
     }
 
     fn block(&self, top: usize, left: usize) -> [[f64; BLOCK]; BLOCK] {
+        let is_zero = |block: &[f64; BLOCK]| block.iter().all(|x| *x == 0.0);
         let mut sums = [[0.0; BLOCK]; BLOCK];
         for column in self.blocks.chunks_exact(self.width) {
             let (down, across) = (&column[top], &column[left]);
+            // How large an error is does not depend on the motion.
+            if self.width > 1 && is_zero(across) {
+                continue;
+            }
             for i in 0..BLOCK {
                 for j in 0..BLOCK {
                     sums[i][j] += down[i] * across[j];

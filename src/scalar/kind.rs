@@ -65,7 +65,10 @@ pub(crate) use of_each_kind;
 
 /// Kinds whose numbers carry their derivatives with them, so that these can
 /// be looked at on the way.
-pub trait Forward: Kind {}
+pub trait Forward: Kind {
+    /// The derivatives along all directions.
+    fn partials(x: &Self::Repr) -> &[f64];
+}
 
 /// The kind of ordinary numbers.
 #[derive(Clone, Copy, Debug, Default)]
@@ -199,7 +202,12 @@ impl<const N: usize> Kind for Grad<N> {
     }
 }
 
-impl<const N: usize> Forward for Grad<N> {}
+impl<const N: usize> Forward for Grad<N> {
+    #[inline(always)]
+    fn partials(x: &Dual<N>) -> &[f64] {
+        &x.partials
+    }
+}
 
 /// a b + c, in one rounding where the machine does that in one step.
 #[inline(always)]

@@ -255,6 +255,12 @@ impl<K: Forward> Real<K> {
         K::partial(&self.0, direction)
     }
 
+    /// The derivatives along all directions.
+    #[inline(always)]
+    pub(crate) fn partials(&self) -> &[f64] {
+        K::partials(&self.0)
+    }
+
     /// Whether the value and all derivatives are finite.
     #[inline]
     pub fn is_finite(self) -> bool {
