@@ -108,14 +108,9 @@ impl Jacobian {
     }
 
     fn block(&self, top: usize, left: usize) -> [[f64; BLOCK]; BLOCK] {
-        let is_zero = |block: &[f64; BLOCK]| block.iter().all(|x| *x == 0.0);
         let mut sums = [[0.0; BLOCK]; BLOCK];
         for column in self.blocks.chunks_exact(self.width) {
             let (down, across) = (&column[top], &column[left]);
-            // How large an error is does not depend on the motion.
-            if self.width > 1 && is_zero(across) {
-                continue;
-            }
             for i in 0..BLOCK {
                 for j in 0..BLOCK {
                     sums[i][j] += down[i] * across[j];
