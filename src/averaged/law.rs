@@ -6,7 +6,7 @@ use std::f64::consts::LN_10;
 use super::mix::mixed;
 use super::noises::Under;
 use crate::calibrate::of_summary;
-use crate::diagnosis::{FreeForce, locate_all, own_draws};
+use crate::diagnosis::{FreeForce, left_open, locate_all};
 use crate::draws::{Draws, log_sum_exp, summarise};
 use crate::error::{Error, Result};
 use crate::infer::Progress;
@@ -104,8 +104,9 @@ fn located(one: &Under<'_>, seed: Seed) -> Result<Located> {
         a.log_bayes_factor.total_cmp(&b.log_bayes_factor)
     };
     let likeliest = forces.iter().max_by(more);
+    let open = left_open(one.program(), &extent, &forces, seed.child(1))?;
     Ok(Located {
-        draws: own_draws(one.program(), &extent, &forces, seed.child(1))?,
+        draws: open.own,
         logs: [none.log_evidence + gain, none.log_evidence],
         differs: likeliest.is_some_and(|force| !force.runs().is_empty()),
     })

@@ -23,7 +23,7 @@ use crate::diagnosis::findings::{
 };
 use crate::diagnosis::hypothesis::{NONE, UNKNOWN};
 use crate::diagnosis::locate::{
-    FORMULA, FreeForce, free_fit, left, own_draws,
+    FORMULA, FreeForce, Open, free_fit, left, left_open,
 };
 use crate::diagnosis::options::Options;
 use crate::diagnosis::tell::noise::is_other;
@@ -228,7 +228,8 @@ impl Subject<'_> {
         let after = corrected_model(decision, free.as_ref(), row, all, seed);
         let compared =
             self.compared(table, row, after.as_ref(), options, seed)?;
-        let mut law = self.law(table, row, &compared, options, seed)?;
+        let open = self.left_open(row, options, seed)?;
+        let mut law = self.law(table, open.as_ref(), &compared, options)?;
         if after.is_none() {
             law.corrected.clear();
         }
@@ -254,7 +255,7 @@ impl Subject<'_> {
                 self.rest(row, after.as_ref(), seed)?;
         }
         self.write_out(&mut diagnosis, chosen.as_ref(), forces, options);
-        diagnosis.forces = forces.clone();
+        diagnosis.forces = completed(forces, open);
         diagnosis.doubt();
         diagnosis.weak = is_weak(&diagnosis);
         Ok(diagnosis)
@@ -400,20 +401,31 @@ impl Subject<'_> {
         free_fit(program, &self.extent, force, &found.none).map(Some)
     }
 
+    /// The friction law with the rest of the physics left open; `None` of a
+    /// model without friction.
+    fn left_open(
+        &self,
+        row: &Row<'_>,
+        options: &Options,
+        seed: Seed,
+    ) -> Result<Option<Open>> {
+        if options.law.as_ref().is_some_and(Vec::is_empty) {
+            return Ok(None);
+        }
+        let (program, forces) = (row.noisy.program(), &row.found()?.forces);
+        left_open(program, &self.extent, forces, seed.child(60)).map(Some)
+    }
+
     /// The law's parameters as they were, corrected, and with the rest of the
     /// physics left open.
     fn law(
         &self,
         table: &Table<'_>,
-        row: &Row<'_>,
+        open: Option<&Open>,
         compared: &Diagnosis,
         options: &Options,
-        seed: Seed,
     ) -> Result<LawParameters> {
-        // A model without friction has none.
-        if options.law.as_ref().is_some_and(Vec::is_empty) {
-            return Ok(LawParameters::default());
-        }
+        let Some(open) = open else { return Ok(LawParameters::default()) };
         let is_of_law = |p: &ParameterSummary| {
             // "mu" of "mu", of "mu[1]", and of an event's "C10.mu".
             let own = p.name.split('[').next().unwrap_or_default();
@@ -432,12 +444,10 @@ impl Subject<'_> {
         };
         let corrected = compared.parameters.iter().filter(is_own);
         let corrected = corrected.filter(|p| is_of_law(p)).cloned();
-        let (program, forces) = (row.noisy.program(), &row.found()?.forces);
-        let open = own_draws(program, &self.extent, forces, seed.child(60))?;
         Ok(LawParameters {
             as_it_was: of(&table.as_it_was()?.none.draws),
             corrected: corrected.collect(),
-            with_free_form_force: of(&open),
+            with_free_form_force: of(&open.own),
         })
     }
 
@@ -504,6 +514,16 @@ fn corrected_model<'a>(
         (None, None) => return None,
     };
     Some(FittedModel { mechanisms, fit, first: seed.child(40), rough })
+}
+
+/// Forces with what is known of each as a whole.
+fn completed(forces: &[FreeForce], open: Option<Open>) -> Vec<FreeForce> {
+    let mut all = forces.to_vec();
+    let bands = open.into_iter().flat_map(|open| open.bands);
+    for (force, band) in all.iter_mut().zip(bands) {
+        force.whole = Some(band);
+    }
+    all
 }
 
 /// The free-form force along the axis with the most evidence.

@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::diagnosis::LawParameters;
-use crate::diagnosis::locate::Process;
+use crate::diagnosis::locate::{Band, Process};
 use crate::mechanism::catalogue::find;
 use crate::mechanism::{Family, Noun};
 use crate::observe::{Event, Series};
@@ -187,12 +187,21 @@ fn force(axis: Axis, end: f64, middle: f64, log: f64) -> FreeForce {
     let step = end / CELLS as f64;
     let at: Vec<f64> = (0..CELLS).map(|i| step * (i as f64 + 0.5)).collect();
     let hump = |x: f64| -0.95 * (-((x - middle) / (0.09 * end)).powi(4)).exp();
-    FreeForce {
-        process: Process(0.0, 0.0),
-        axis,
+    let band = Band {
         mean: at.iter().map(|x| hump(*x) + 0.1 * (x / step).sin()).collect(),
         sd: at.iter().map(|x| 0.12 + 0.2 * (x / end).powi(4)).collect(),
         width: 2.9,
+    };
+    let whole = Band {
+        mean: band.mean.iter().map(|mean| mean - 0.15).collect(),
+        sd: band.sd.iter().map(|sd| sd.hypot(0.3)).collect(),
+        width: 2.2,
+    };
+    FreeForce {
+        process: Process(0.0, 0.0),
+        axis,
+        band,
+        whole: Some(whole),
         draws: vec![],
         log_bayes_factor: log,
         se: 0.05,

@@ -31,8 +31,8 @@ pub use findings::{
     Rival, Variant, Verdict, Withheld,
 };
 pub use hypothesis::Hypothesis;
-pub use locate::{CELLS, FreeForce, locate};
-pub(crate) use locate::{locate_all, own_draws};
+pub use locate::{Band, CELLS, FreeForce, locate};
+pub(crate) use locate::{left_open, locate_all};
 pub use options::Options;
 #[cfg(feature = "pages")]
 pub use tell::page::page;

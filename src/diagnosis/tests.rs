@@ -182,8 +182,8 @@ fn broken() -> Diagnosis {
     d.baseline.ljung_box_p = nan;
     d.baseline.stationary_sd = Some(nan);
     d.baseline.instrument = Some(0.0);
-    d.forces[0].mean[3] = nan;
-    d.forces[1].sd[3] = f64::INFINITY;
+    d.forces[0].band.mean[3] = nan;
+    d.forces[1].band.sd[3] = f64::INFINITY;
     d.forces[2].log_bayes_factor = nan;
     d.pictured[0].values[4] = nan;
     d.pictured[0].places[7] = nan;

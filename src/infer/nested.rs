@@ -80,20 +80,25 @@ pub(crate) struct Integral<R> {
 impl<R> Integral<R> {
     /// As many even draws as the weights are worth, and a hundred at least.
     pub(crate) fn draws(&self, seed: Seed) -> Vec<(&[f64], &R)> {
-        let chosen = self.sum.chosen(seed).into_iter();
-        let whole = chosen.filter_map(|i| {
-            let (particle, rest) = &self.found[i];
-            rest.as_ref().map(|rest| (&particle.z[..], rest))
-        });
-        whole.collect()
+        self.whole(self.sum.chosen(seed))
     }
 
-    /// So many even draws of the outer coordinates. Where few draws weigh most,
-    /// weights that are cut say how wide they lie, and lean to the proposal,
-    /// which is wider.
-    pub(crate) fn spread(&self, count: usize, seed: Seed) -> Vec<&[f64]> {
-        let chosen = self.sum.even(count, seed).into_iter();
-        chosen.map(|i| &self.found[i].0.z[..]).collect()
+    /// So many even draws. Where few draws weigh most, weights that are cut say
+    /// how wide they lie, and lean to the proposal, which is wider.
+    pub(crate) fn spread(
+        &self,
+        count: usize,
+        seed: Seed,
+    ) -> Vec<(&[f64], &R)> {
+        self.whole(self.sum.even(count, seed))
+    }
+
+    fn whole(&self, chosen: Vec<usize>) -> Vec<(&[f64], &R)> {
+        let of = |i: usize| {
+            let (particle, rest) = &self.found[i];
+            rest.as_ref().map(|rest| (&particle.z[..], rest))
+        };
+        chosen.into_iter().filter_map(of).collect()
     }
 }
 

@@ -11,6 +11,41 @@ use crate::mechanism::Extent;
 use crate::physics::forces::Axis;
 use crate::seed::Seed;
 
+/// A force in each cell, and a band that holds nine of ten such forces along
+/// their whole length.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Band {
+    /// The posterior mean in each cell \[m/s2\]; positive drives the mass.
+    pub mean: Vec<f64>,
+    /// The posterior sd.
+    pub sd: Vec<f64>,
+    /// By how many sd the band lies off the mean.
+    pub width: f64,
+}
+
+impl Band {
+    /// That of draws of the whole force.
+    pub(super) fn of(draws: &[Vec<f64>]) -> Self {
+        let (mean, sd) = moments(draws);
+        let width = simultaneous(draws, &mean, &sd);
+        Self { mean, sd, width }
+    }
+
+    /// Its lower and its upper end in each cell.
+    pub fn ends(&self) -> (Vec<f64>, Vec<f64>) {
+        let each = self.mean.iter().zip(&self.sd);
+        let off = |s: &f64| self.width * s;
+        each.map(|(m, s)| (m - off(s), m + off(s))).unzip()
+    }
+
+    /// The sign of the force where it leaves zero out, else 0.
+    pub fn sign(&self, cell: usize) -> f64 {
+        let mean = self.mean[cell];
+        let is_clear = mean.abs() > self.width * self.sd[cell];
+        if is_clear { mean.signum() } else { 0.0 }
+    }
+}
+
 /// What is known of the free-form force along one axis.
 #[derive(Debug, Clone)]
 pub struct FreeForce {
@@ -18,13 +53,12 @@ pub struct FreeForce {
     pub axis: Axis,
     /// The middle of each cell \[m, s or m/s\].
     pub at: Vec<f64>,
-    /// Its posterior mean in each cell \[m/s2\]; positive drives the mass.
-    pub mean: Vec<f64>,
-    /// Its posterior sd.
-    pub sd: Vec<f64>,
-    /// By how many sd the simultaneous 90 % band lies off the mean.
-    pub width: f64,
-    /// Draws of the whole force.
+    /// The force beside the friction law: what the law could do is left to it.
+    pub band: Band,
+    /// The whole force, with what no recording tells from the law, where that
+    /// was inferred too.
+    pub whole: Option<Band>,
+    /// Draws of the force beside the law.
     pub draws: Vec<Vec<f64>>,
     /// The model's own parameters, on the real line, of each draw.
     pub(crate) own: Vec<Vec<f64>>,
@@ -56,13 +90,11 @@ impl FreeForce {
         let own = |z: &[f64], n: usize| vec![z[2..].to_vec(); n];
         let draws: Vec<Vec<f64>> =
             each.clone().flat_map(|(_, forces)| (*forces).clone()).collect();
-        let (mean, sd) = moments(&draws);
         Self {
             axis,
             at: at.collect(),
-            width: simultaneous(&draws, &mean, &sd),
-            mean,
-            sd,
+            band: Band::of(&draws),
+            whole: None,
             looks,
             own: each.clone().flat_map(|(z, f)| own(z, f.len())).collect(),
             log_bayes_factor: found.sum.log - none.log_evidence,
@@ -146,7 +178,7 @@ impl FreeForce {
         let half = 0.5 * self.step();
         let mut runs: Vec<(f64, Stretch)> = Vec::new();
         for i in 0..CELLS {
-            let sign = self.sign(i);
+            let sign = self.band.sign(i);
             if sign == 0.0 {
                 continue;
             }
@@ -167,7 +199,8 @@ impl FreeForce {
     /// The cell with the largest mean for its sd, as a stretch.
     pub fn strongest(&self) -> Stretch {
         let half = 0.5 * self.step();
-        let score = |i: usize| self.mean[i].abs() / self.sd[i].max(1e-12);
+        let Band { mean, sd, .. } = &self.band;
+        let score = |i: usize| mean[i].abs() / sd[i].max(1e-12);
         let best = (0..CELLS)
             .max_by(|&a, &b| score(a).total_cmp(&score(b)))
             .unwrap_or(0);
@@ -177,15 +210,6 @@ impl FreeForce {
 
     fn step(&self) -> f64 {
         self.at[1] - self.at[0]
-    }
-
-    /// The sign of the force where its band leaves zero out, else 0.
-    fn sign(&self, i: usize) -> f64 {
-        if self.mean[i].abs() > self.width * self.sd[i] {
-            self.mean[i].signum()
-        } else {
-            0.0
-        }
     }
 
     /// Each draw's mean force over a stretch \[m/s2\].

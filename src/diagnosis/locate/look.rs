@@ -86,28 +86,31 @@ impl Look {
 pub(super) struct Sought<'a, 'm> {
     pub(super) cells: Cells<'a, 'm>,
     pub(super) extent: &'a Extent,
-    /// Whether the force has a level of its own along the whole run.
-    pub(super) has_level: bool,
+    /// Forces of their own along the whole run, beforehand each as large as
+    /// the process's.
+    pub(super) besides: Option<&'a DMatrix<f64>>,
 }
 
 impl<'a, 'm> Sought<'a, 'm> {
-    /// Of so many cells, without a level.
+    /// Of so many cells, with a process's force alone.
     pub(super) fn of(
         posterior: &'a Posterior<'m>,
         extent: &'a Extent,
         cells: usize,
     ) -> Self {
         let cells = Cells { posterior, count: cells };
-        Self { cells, extent, has_level: false }
+        Self { cells, extent, besides: None }
     }
 
     /// What makes a process's force of standard normal waves.
     pub(super) fn factor(&self, process: &Process) -> DMatrix<f64> {
-        let Cells { count, .. } = self.cells;
-        match self.has_level {
-            true => process.factor_with_level(self.extent, count),
-            false => process.factor(self.extent, count),
-        }
+        let factor = process.factor(self.extent, self.cells.count);
+        let Some(besides) = self.besides else { return factor };
+        let scaled = besides * process.size();
+        let waves = factor.ncols();
+        let mut all = factor.resize_horizontally(waves + scaled.ncols(), 0.0);
+        all.columns_mut(waves, scaled.ncols()).copy_from(&scaled);
+        all
     }
 
     /// The looks at the processes of others, from where these are.

@@ -8,6 +8,7 @@
 //! these. A speed error shows downstream of its cause; the force shows where
 //! the cause is.
 
+mod confounded;
 mod force;
 mod free_form;
 mod look;
@@ -27,13 +28,13 @@ use crate::model::{AnyProgram, Posterior, Program, With};
 use crate::physics::forces::Axis;
 use crate::seed::Seed;
 
-pub use force::FreeForce;
 pub(super) use force::Stretch;
+pub use force::{Band, FreeForce};
 use free_form::FreeForm;
 pub(super) use free_form::{FORMULA, NOUN, SAYS};
 use look::{COARSE, FINE, Look, Sought, highest, proposal};
 use marginal::Marginal;
-pub(crate) use open::own_draws;
+pub(crate) use open::{Open, left_open};
 pub use process::CELLS;
 #[cfg(test)]
 pub(super) use process::Process;

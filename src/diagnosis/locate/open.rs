@@ -1,21 +1,23 @@
-//! The model's own parameters with the rest of the physics left open.
+//! The model's own parameters, and the whole force, with the rest of the
+//! physics left open.
 //!
-//! A force that is missing need not be zero on average over the run, and no
-//! recording tells a force that is the same everywhere from a friction. The
-//! free-form force has no such level, so that it shows where a mismatch is:
-//! what is level is the model's. What its parameters can be with the rest left
-//! open takes the level in: a discrepancy that is presumed to be zero on
-//! average makes parameters sure of a wrong value (Brynjarsdottir, O'Hagan
-//! 2014).
+//! What a force does that the friction law could do too no recording tells
+//! from the law. The free-form force leaves that to the law, so that it shows
+//! where a mismatch is. But what is missing need not be zero on average, nor
+//! free of what grows with the speed: a discrepancy that is presumed to be so
+//! makes parameters sure of a wrong value (Brynjarsdottir, O'Hagan 2014). So
+//! the parameters and the whole force are drawn with forces of their own for
+//! what is confounded with the law.
 
-use super::force::FreeForce;
+use super::confounded::confounded;
+use super::force::{Band, FreeForce};
 use super::free_form::FreeForm;
-use super::look::{Look, Sought, proposal};
+use super::look::{Look, Sought, highest, proposal};
 use super::marginal::Marginal;
 use super::process::CELLS;
 use crate::draws::{Draws, log_sum_exp};
 use crate::error::Result;
-use crate::infer::nested::{Effort, integrated, learn};
+use crate::infer::nested::{Effort, Integral, integrated, learn};
 use crate::mechanism::Extent;
 use crate::model::{AnyProgram, Posterior, Program, With};
 use crate::physics::forces::Axis;
@@ -26,33 +28,48 @@ const TOLD: usize = 400;
 /// How many are made along each axis.
 const EFFORT: Effort =
     Effort { learning: 60, rounds: 3, last: (200, 600), error: 0.1 };
+/// The same along an axis whose force is so improbable that none is told of.
+const FEW: Effort = Effort { last: (60, 60), ..EFFORT };
 
-/// Draws of the model's own parameters with a force of free form and a level
-/// in it, along each axis as often as the force there is probable.
+/// What is known with a force of free form that may do what the law does.
+#[derive(Debug)]
+pub(crate) struct Open {
+    /// The model's own parameters, along each axis as often as the force there
+    /// is probable.
+    pub(crate) own: Draws,
+    /// The whole force along each axis.
+    pub(crate) bands: Vec<Band>,
+}
+
+/// Leaves the rest of the physics open, from forces that leave what the law
+/// does to the law.
 ///
 /// # Errors
 /// A model that fails.
-pub(crate) fn own_draws(
+pub(crate) fn left_open(
     program: &dyn AnyProgram,
     extent: &Extent,
     forces: &[FreeForce],
     seed: Seed,
-) -> Result<Draws> {
+) -> Result<Open> {
     let with = With::new(program, &[]);
     let posterior = Posterior::new(&with)?;
     let total = log_sum_exp(forces.iter().map(|f| f.log_bayes_factor));
-    let mut rows = Vec::new();
+    let (mut rows, mut bands) = (Vec::new(), Vec::new());
     for (i, force) in forces.iter().enumerate() {
         let share = (force.log_bayes_factor - total).exp();
         let count = (share * TOLD as f64).round() as usize;
-        if count == 0 {
-            continue;
-        }
+        let effort = if count == 0 { FEW } else { EFFORT };
         let seed = seed.child(i as u64);
         let along = (force.axis, &force.looks[..]);
-        for own in with_level(program, extent, along, count, seed)? {
-            rows.extend(posterior.natural(&own)?);
+        let found = whole(program, extent, along, effort, seed)?;
+        for (z, _) in found.spread(count, seed.child(2)) {
+            rows.extend(posterior.natural(&z[2..])?);
         }
+        let drawn = found.spread(TOLD, seed.child(2)).into_iter();
+        let drawn: Vec<Vec<f64>> =
+            drawn.flat_map(|(_, forces)| forces.clone()).collect();
+        bands.push(Band::of(&drawn));
     }
     let parameters = posterior.parameters().iter();
     let mut draws = Draws::new(
@@ -60,28 +77,28 @@ pub(crate) fn own_draws(
         parameters.map(|p| p.unit.clone()).collect(),
     )?;
     draws.push_chain(rows, None)?;
-    Ok(draws)
+    Ok(Open { own: draws, bands })
 }
 
-/// So many draws of the model's own parameters, on the real line, with a force
-/// along one axis, from where it is best without its level.
-fn with_level(
+/// Draws of the process, the model's own parameters and the whole force along
+/// one axis, from where the force beside the law is best.
+fn whole(
     program: &dyn AnyProgram,
     extent: &Extent,
     (axis, looks): (Axis, &[Look]),
-    count: usize,
+    effort: Effort,
     seed: Seed,
-) -> Result<Vec<Vec<f64>>> {
+) -> Result<Integral<Vec<Vec<f64>>>> {
     let form = FreeForm::cells(extent, axis, CELLS);
     let with = With::new(program, &[&form]);
     let posterior = Posterior::new(&with)?;
-    let mut sought = Sought::of(&posterior, extent, CELLS);
-    sought.has_level = true;
+    let likeliest = highest(looks).map(|look| &look.tangent);
+    let besides = likeliest.map(|tangent| confounded(tangent, extent));
+    let sought = Sought::of(&posterior, extent, CELLS);
+    let sought = Sought { besides: besides.as_ref(), ..sought };
     let looks = sought.looks_from(looks)?;
     let mixture = proposal(&looks)?;
     let marginal = Marginal::new(sought, looks, program.events() > 1);
-    let learned = learn(&marginal, mixture, EFFORT, seed.child(0))?;
-    let found = integrated(&marginal, &learned, EFFORT, seed.child(1))?;
-    let drawn = found.spread(count, seed.child(2)).into_iter();
-    Ok(drawn.map(|z| z[2..].to_vec()).collect())
+    let learned = learn(&marginal, mixture, effort, seed.child(0))?;
+    integrated(&marginal, &learned, effort, seed.child(1))
 }

@@ -25,6 +25,12 @@ impl Process {
         (Self(z[0], z[1]), &z[2..])
     }
 
+    /// One of such a length \[m\].
+    pub(super) fn of_length(length: f64) -> Self {
+        let (median, spread) = LENGTH;
+        Self((length / median).ln() / spread, 0.0)
+    }
+
     /// Its length \[m\].
     pub(super) fn length(&self) -> f64 {
         let (median, spread) = LENGTH;
@@ -68,18 +74,6 @@ impl Process {
         cells: usize,
     ) -> DMatrix<f64> {
         pivoted(&self.correlation(extent, cells)) * self.size()
-    }
-
-    /// The same with one wave more: a force that is the same along the whole
-    /// run, beforehand as large as the others are in any place.
-    pub(super) fn factor_with_level(
-        &self,
-        extent: &Extent,
-        cells: usize,
-    ) -> DMatrix<f64> {
-        let factor = self.factor(extent, cells);
-        let waves = factor.ncols();
-        factor.insert_column(waves, self.size())
     }
 
     /// The same of [`CELLS`] cells with as many waves, so that these make any

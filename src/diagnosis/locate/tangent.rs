@@ -68,9 +68,9 @@ pub(super) struct Tangent {
     /// Along the force, and along the own parameters.
     pulls: (DVector<f64>, DVector<f64>),
     /// A, and how both go together, and of the own parameters.
-    of_force: DMatrix<f64>,
-    across: DMatrix<f64>,
-    of_own: DMatrix<f64>,
+    pub(super) of_force: DMatrix<f64>,
+    pub(super) across: DMatrix<f64>,
+    pub(super) of_own: DMatrix<f64>,
 }
 
 impl Tangent {

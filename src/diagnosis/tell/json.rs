@@ -4,7 +4,7 @@ use std::f64::consts::LN_10;
 
 use serde_json::{Map, Value, json};
 
-use crate::diagnosis::locate::FreeForce;
+use crate::diagnosis::locate::{Band, FreeForce};
 use crate::diagnosis::tell::words::{in_words, single_rival};
 use crate::diagnosis::{
     Baseline, Corrected, Diagnosis, Improvement, Judged, JudgedNoise,
@@ -113,11 +113,17 @@ fn rival_json(rival: &Rival) -> Value {
 }
 
 fn force_json(force: &FreeForce) -> Value {
-    json!({
-        "coordinate": axis_name(force.axis), "at": force.at,
-        "mean": force.mean, "sd": force.sd, "band": force.width,
-        "log10_bayes_factor": force.log_bayes_factor / LN_10,
-    })
+    let whole = force.whole.as_ref().unwrap_or(&force.band);
+    let mut out = band_json(whole);
+    out["coordinate"] = axis_name(force.axis).into();
+    out["at"] = json!(force.at);
+    out["besides_law"] = band_json(&force.band);
+    out["log10_bayes_factor"] = json!(force.log_bayes_factor / LN_10);
+    out
+}
+
+fn band_json(band: &Band) -> Value {
+    json!({"mean": band.mean, "sd": band.sd, "band": band.width})
 }
 
 fn priors_json(priors: &[(String, String)]) -> Value {

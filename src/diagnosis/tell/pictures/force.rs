@@ -6,12 +6,12 @@ use std::f64::consts::LN_10;
 use super::along::along;
 use super::figure::{Figure, shade};
 use crate::diagnosis::tell::phrases::log10;
-use crate::diagnosis::{Diagnosis, FreeForce};
+use crate::diagnosis::{Band, Diagnosis, FreeForce};
 use crate::physics::forces::Axis;
 use crate::report::svg::axes::{Axes, Key, Labels, Scale, legend};
 use crate::report::svg::canvas::{Anchor, Canvas, FONT, Frame, Point, Sheet};
 use crate::report::svg::palette::{
-    FULL, GREY, INK, MARKED, MASS, POSTERIOR, Pen,
+    FLOW, FULL, GREY, INK, MARKED, MASS, POSTERIOR, Pen,
 };
 use crate::report::svg::series::LOCATED;
 
@@ -24,6 +24,7 @@ const GAP: f64 = 26.0;
 /// What the series are called.
 const MEAN_FORCE: &str = "mean";
 const BAND: &str = "90 % band of the whole curve";
+const WHOLE: &str = "the same with what friction could do";
 const CLEAR: &str = "the band leaves zero out";
 
 const MEAN: Pen = Pen::new(POSTERIOR, 2.0);
@@ -102,23 +103,22 @@ fn main(forces: &[FreeForce]) -> Option<&FreeForce> {
 fn entries(d: &Diagnosis) -> Vec<(Key, &'static str)> {
     let mut out = vec![
         (Key::Line(MEAN), MEAN_FORCE),
-        (Key::Fill(FULL), BAND),
+        (Key::Fill(FLOW), BAND),
         (Key::Line(SURE), CLEAR),
     ];
+    if d.forces.iter().any(|force| force.whole.is_some()) {
+        out.insert(2, (Key::Fill(FULL), WHOLE));
+    }
     if !d.mismatch.is_empty() {
         out.push((Key::Fill(MARKED), LOCATED));
     }
     out
 }
 
-fn bounds(f: &FreeForce) -> (Vec<f64>, Vec<f64>) {
-    let ends = f.mean.iter().zip(&f.sd);
-    ends.map(|(m, s)| (m - f.width * s, m + f.width * s)).unzip()
-}
-
 fn scale(f: &FreeForce) -> Scale {
-    let (low, high) = bounds(f);
-    Scale::of(low.into_iter().chain(high).chain([0.0])).padded(0.08)
+    let bands = f.whole.iter().chain([&f.band]).map(Band::ends);
+    let ends = bands.flat_map(|(low, high)| [low, high]).flatten();
+    Scale::of(ends.chain([0.0])).padded(0.08)
 }
 
 fn panel(
@@ -134,13 +134,16 @@ fn panel(
     shade(canvas, &axes, stretches);
     let (over, name) = names(f.axis);
     axes.draw(canvas, Labels { x: Some(name), y: Some("force [m/s²]") });
-    let (low, high) = bounds(f);
     canvas.clip(frame);
     let of = |y: &[f64]| axes.points(&f.at, y);
-    canvas.of(BAND);
-    canvas.area(&of(&low), &of(&high), FULL, 0.85);
+    let wide = f.whole.iter().map(|band| (WHOLE, band, FULL));
+    for (name, band, colour) in wide.chain([(BAND, &f.band, FLOW)]) {
+        let (low, high) = band.ends();
+        canvas.of(name);
+        canvas.area(&of(&low), &of(&high), colour, 0.85);
+    }
     canvas.of(MEAN_FORCE);
-    canvas.curve(&of(&f.mean), MEAN);
+    canvas.curve(&of(&f.band.mean), MEAN);
     canvas.of(CLEAR);
     canvas.curve(&sure(&axes, f), SURE);
     canvas.of("");
@@ -169,8 +172,8 @@ fn names(axis: Axis) -> (&'static str, &'static str) {
 fn sure(axes: &Axes, f: &FreeForce) -> Vec<Point> {
     let half = 0.5 * f.at.windows(2).next().map_or(0.0, |w| w[1] - w[0]);
     let mut points = Vec::new();
-    for ((x, m), s) in f.at.iter().zip(&f.mean).zip(&f.sd) {
-        if m.abs() > f.width * s {
+    for (i, (x, m)) in f.at.iter().zip(&f.band.mean).enumerate() {
+        if f.band.sign(i) != 0.0 {
             // A cell alone is still a line.
             points.push(axes.at(x - 0.2 * half, *m));
             points.push(axes.at(x + 0.2 * half, *m));
@@ -201,6 +204,11 @@ fn caption(d: &Diagnosis) -> String {
          own parameters: above zero it drives the mass, below it brakes. \
          Nine of ten such forces lie in the band along their whole length."
         .to_owned();
+    if d.forces.iter().any(|force| force.whole.is_some()) {
+        out += " What the friction law could do with other parameters is left \
+                to it: no recording tells the two apart. The pale band is that \
+                of the whole force.";
+    }
     let best = d
         .forces
         .iter()
