@@ -230,9 +230,7 @@ impl Subject<'_> {
             self.compared(table, row, after.as_ref(), options, seed)?;
         let open = self.left_open(row, options, seed)?;
         let mut law = self.law(table, open.as_ref(), &compared, options)?;
-        if after.is_none() {
-            law.corrected.clear();
-        }
+        law.corrected.retain(|_| after.is_some());
         let group = group(judged);
         let rivals = decision.rivals(all, &table.as_it_was()?.none);
         let mut diagnosis = Diagnosis {
@@ -521,7 +519,7 @@ fn completed(forces: &[FreeForce], open: Option<Open>) -> Vec<FreeForce> {
     let mut all = forces.to_vec();
     let bands = open.into_iter().flat_map(|open| open.bands);
     for (force, band) in all.iter_mut().zip(bands) {
-        force.whole = Some(band);
+        force.whole = band;
     }
     all
 }

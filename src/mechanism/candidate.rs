@@ -257,7 +257,6 @@ impl<K: Kind, M: Missing> ChangeOf<K> for M {
 pub trait Mechanism:
     Candidate
     + ChangeOf<Plain>
-    + ChangeOf<Grad<2>>
     + ChangeOf<Grad<4>>
     + ChangeOf<Grad<8>>
     + ChangeOf<Grad<16>>

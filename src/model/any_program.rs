@@ -24,7 +24,6 @@ pub trait RunOf<K: Kind> {
 pub trait AnyProgram:
     Model
     + RunOf<Plain>
-    + RunOf<Grad<2>>
     + RunOf<Grad<4>>
     + RunOf<Grad<8>>
     + RunOf<Grad<16>>

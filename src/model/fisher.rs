@@ -143,7 +143,6 @@ pub(super) fn information(
         let (first, slots) =
             (of.start + done, &mut gradient.as_mut_slice()[done..]);
         let density = match wide {
-            2 => pass::<Grad<2>>(program, z, first, slots, &mut columns),
             4 => pass::<Grad<4>>(program, z, first, slots, &mut columns),
             8 => pass::<Grad<8>>(program, z, first, slots, &mut columns),
             _ => pass::<Grad<16>>(program, z, first, slots, &mut columns),

@@ -70,7 +70,6 @@ fn forward(
     for (first, wide) in passes(z.len().max(1), MOST) {
         let slots = &mut gradient[first..];
         let found = match wide {
-            2 => pass::<Grad<2>>(program, z, weights, first, slots),
             4 => pass::<Grad<4>>(program, z, weights, first, slots),
             _ => pass::<Grad<8>>(program, z, weights, first, slots),
         }?;

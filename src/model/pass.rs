@@ -11,6 +11,10 @@ use crate::scalar::Real;
 /// The density; ln of the prior, of the Jacobian and of the likelihood.
 pub(super) type Parts<K> = (Density, Real<K>, Real<K>, Real<K>);
 
+/// How many directions a pass takes at the least: each width is another copy of
+/// every model, noise and law, and one of 2 hardly takes less time.
+const FEWEST: usize = 4;
+
 /// How so many coordinates are taken forward: where each pass begins, and how
 /// many directions its numbers carry: the most at a time, and at last no more
 /// than what is left needs.
@@ -21,7 +25,8 @@ pub(super) fn passes(
     let mut first = 0;
     std::iter::from_fn(move || {
         let left = count.checked_sub(first).filter(|left| *left > 0)?;
-        let (begin, wide) = (first, left.next_power_of_two().clamp(2, most));
+        let (begin, wide) =
+            (first, left.next_power_of_two().clamp(FEWEST, most));
         first += wide;
         Some((begin, wide))
     })
@@ -80,10 +85,10 @@ mod tests {
     fn passes_are_no_wider_than_what_is_left_needs() {
         let of = |count, most| passes(count, most).collect::<Vec<_>>();
         assert_eq!(of(0, 8), []);
-        assert_eq!(of(1, 8), [(0, 2)]);
+        assert_eq!(of(1, 8), [(0, 4)]);
         assert_eq!(of(3, 8), [(0, 4)]);
         assert_eq!(of(11, 8), [(0, 8), (8, 4)]);
         assert_eq!(of(16, 8), [(0, 8), (8, 8)]);
-        assert_eq!(of(17, 16), [(0, 16), (16, 2)]);
+        assert_eq!(of(17, 16), [(0, 16), (16, 4)]);
     }
 }

@@ -34,7 +34,6 @@ pub trait NoiseFor<K: Kind> {
 /// A noise as an event file names it, its parameters still open.
 pub trait NoiseEntry:
     NoiseFor<Plain>
-    + NoiseFor<Grad<2>>
     + NoiseFor<Grad<4>>
     + NoiseFor<Grad<8>>
     + NoiseFor<Grad<16>>

@@ -102,6 +102,17 @@ impl<K: Kind> Whole<'_, K> {
         }
     }
 
+    /// The same outside of a likelihood: one copy of the filters for all that
+    /// looks at values one by one, which is called for each.
+    fn shown(
+        &self,
+        at: &Grid,
+        residuals: Residuals<'_, K>,
+        visit: &mut dyn FnMut(&Innovation<K>),
+    ) -> Result<(), Stop> {
+        self.each(at, residuals, visit)
+    }
+
     #[inline(always)]
     fn filtered<const N: usize>(
         &self,
@@ -187,13 +198,13 @@ impl<K: Kind> Noise<K> for Whole<'_, K> {
         one_per_time(at, residuals)?;
         let seen = Residuals::Seen(residuals);
         let Some(nu) = self.tails() else {
-            return self.each(at, seen, |next| {
+            return self.shown(at, seen, &mut |next| {
                 let law = Gaussian::new(next.variance);
                 visit(next.sized(law.at(next.error)));
             });
         };
         let (peak, known) = (log_peak(nu), Known::of(nu.value()));
-        self.each(at, seen, |next| {
+        self.shown(at, seen, &mut |next| {
             let law = Law::new(nu, peak, next.variance);
             visit(law.at(next.error, next.log_size, &known));
         })
@@ -233,7 +244,7 @@ impl<K: Kind> Noise<K> for Whole<'_, K> {
 
     fn draw(&self, at: &Grid, rng: &mut Rng) -> Result<Vec<f64>, Stop> {
         let mut drawn = Vec::with_capacity(at.len());
-        self.each(at, Residuals::Drawn(rng, &mut drawn), |_| {})?;
+        self.shown(at, Residuals::Drawn(rng, &mut drawn), &mut |_| {})?;
         Ok(drawn)
     }
 

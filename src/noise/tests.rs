@@ -235,8 +235,8 @@ fn long_gaps_are_as_exact_as_their_steps() {
     for phi in [&[0.5][..], &[0.5, -0.3], &[0.9999, -0.9, 0.2], &[-0.9999]] {
         let noise = ar(phi, 1.0);
         let at = long(n);
-        let x: Vec<Real<Grad<2>>> = lifted(&r);
-        let values: Vec<Real<Grad<2>>> = phi
+        let x: Vec<Real<Grad<4>>> = lifted(&r);
+        let values: Vec<Real<Grad<4>>> = phi
             .iter()
             .chain(&[1.0])
             .enumerate()

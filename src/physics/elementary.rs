@@ -197,7 +197,7 @@ mod tests {
     use super::*;
     use crate::scalar::Grad;
 
-    type D = Real<Grad<2>>;
+    type D = Real<Grad<4>>;
 
     /// Each function by its textbook form, in the variable's root.
     fn textbook(name: usize, z: f64) -> f64 {

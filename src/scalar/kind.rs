@@ -48,12 +48,11 @@ pub trait Kind: Copy + Debug + Default + Send + Sync + 'static {
 }
 
 /// Writes something, by a macro that takes kinds, for each that models are
-/// evaluated with: plain numbers, four widths of gradient, and the tape.
+/// evaluated with: plain numbers, three widths of gradient, and the tape.
 macro_rules! of_each_kind {
     ($implement:ident) => {
         $implement!(
             $crate::scalar::Plain,
-            $crate::scalar::Grad<2>,
             $crate::scalar::Grad<4>,
             $crate::scalar::Grad<8>,
             $crate::scalar::Grad<16>,

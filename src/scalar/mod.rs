@@ -529,7 +529,7 @@ pub fn polynomial(x: f64, coefficients: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    type D = Real<Grad<2>>;
+    type D = Real<Grad<4>>;
 
     /// Central difference of fourth order, error about 1e-11 at h = 1e-3.
     fn difference(f: impl Fn(f64) -> f64, x: f64) -> f64 {

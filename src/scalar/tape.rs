@@ -154,7 +154,8 @@ impl Traced {
 
     /// A number made of two, with the slopes by their nodes. Numbers of
     /// another recording, as another thread may hand them over, are lost.
-    #[inline(always)]
+    /// Called: with a copy at each place the code of this kind is a sixth larger.
+    #[inline(never)]
     fn join(value: f64, of: [&Self; 2], slopes: [f64; 2]) -> Self {
         WRITTEN.with(|sheet| {
             let recording = sheet.recording.get();

@@ -171,8 +171,8 @@ fn derivatives_are_those_of_the_motion() {
     let step = 1e-6;
     for depth in [Depth::Along(rows(PLACES)), Depth::During(rows(MOMENTS))] {
         let event = event(depth);
-        let (path, release) = (event.path(), event.release::<Grad<2>>());
-        let law = Voellmy::<Real<Grad<2>>> {
+        let (path, release) = (event.path(), event.release::<Grad<4>>());
+        let law = Voellmy::<Real<Grad<4>>> {
             mu: Real::variable(MU, 0),
             xi: Real::variable(XI, 1),
         };

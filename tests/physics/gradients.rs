@@ -325,7 +325,7 @@ fn lifting_off_and_landing_carry_gradients() {
 
 /// The log density of speeds of 20 m/s recorded at some times, errors of
 /// 1 m/s, under Voellmy's law; with the distance at the last time.
-fn density(track: &Track, times: &[f64], mu: f64) -> (Real<Grad<2>>, f64) {
+fn density(track: &Track, times: &[f64], mu: f64) -> (Real<Grad<4>>, f64) {
     let law = Voellmy { mu: Real::variable(mu, 0), xi: 1000.0.into() };
     let path = Path::new(track, 1.0);
     let start = Release { distance: 0.0.into(), speed: 5.0.into() };

@@ -258,7 +258,7 @@ impl Effects {
 /// How fast an amplitude grows along the line, and the slope of its prior's
 /// log density there.
 fn along_line(prior: &AnyPrior, z: f64) -> (f64, f64) {
-    type K = Grad<2>;
+    type K = Grad<4>;
     let support = <AnyPrior as Prior<K>>::support(prior);
     let (x, log_jacobian) = support.from_line(Real::variable(z, 0));
     let log: Real<K> = prior.log_density(x) + log_jacobian;

@@ -12,7 +12,7 @@
 use super::confounded::confounded;
 use super::force::{Band, FreeForce};
 use super::free_form::FreeForm;
-use super::look::{Look, Sought, highest, proposal};
+use super::look::{Sought, highest, proposal};
 use super::marginal::Marginal;
 use super::process::CELLS;
 use crate::draws::{Draws, log_sum_exp};
@@ -20,7 +20,6 @@ use crate::error::Result;
 use crate::infer::nested::{Effort, Integral, integrated, learn};
 use crate::mechanism::Extent;
 use crate::model::{AnyProgram, Posterior, Program, With};
-use crate::physics::forces::Axis;
 use crate::seed::Seed;
 
 /// How many draws are told of.
@@ -28,8 +27,6 @@ const TOLD: usize = 400;
 /// How many are made along each axis.
 const EFFORT: Effort =
     Effort { learning: 60, rounds: 3, last: (200, 600), error: 0.1 };
-/// The same along an axis whose force is so improbable that none is told of.
-const FEW: Effort = Effort { last: (60, 60), ..EFFORT };
 
 /// What is known with a force of free form that may do what the law does.
 #[derive(Debug)]
@@ -37,8 +34,8 @@ pub(crate) struct Open {
     /// The model's own parameters, along each axis as often as the force there
     /// is probable.
     pub(crate) own: Draws,
-    /// The whole force along each axis.
-    pub(crate) bands: Vec<Band>,
+    /// The whole force along each axis; `None` where it is improbable.
+    pub(crate) bands: Vec<Option<Band>>,
 }
 
 /// Leaves the rest of the physics open, from forces that leave what the law
@@ -59,17 +56,19 @@ pub(crate) fn left_open(
     for (i, force) in forces.iter().enumerate() {
         let share = (force.log_bayes_factor - total).exp();
         let count = (share * TOLD as f64).round() as usize;
-        let effort = if count == 0 { FEW } else { EFFORT };
+        if count == 0 {
+            bands.push(None);
+            continue;
+        }
         let seed = seed.child(i as u64);
-        let along = (force.axis, &force.looks[..]);
-        let found = whole(program, extent, along, effort, seed)?;
+        let found = whole(program, extent, force, seed)?;
         for (z, _) in found.spread(count, seed.child(2)) {
             rows.extend(posterior.natural(&z[2..])?);
         }
         let drawn = found.spread(TOLD, seed.child(2)).into_iter();
         let drawn: Vec<Vec<f64>> =
             drawn.flat_map(|(_, forces)| forces.clone()).collect();
-        bands.push(Band::of(&drawn));
+        bands.push(Some(Band::of(&drawn)));
     }
     let parameters = posterior.parameters().iter();
     let mut draws = Draws::new(
@@ -80,25 +79,24 @@ pub(crate) fn left_open(
     Ok(Open { own: draws, bands })
 }
 
-/// Draws of the process, the model's own parameters and the whole force along
-/// one axis, from where the force beside the law is best.
+/// Draws of the process, the model's own parameters and the whole force, from
+/// where the force beside the law is best.
 fn whole(
     program: &dyn AnyProgram,
     extent: &Extent,
-    (axis, looks): (Axis, &[Look]),
-    effort: Effort,
+    force: &FreeForce,
     seed: Seed,
 ) -> Result<Integral<Vec<Vec<f64>>>> {
-    let form = FreeForm::cells(extent, axis, CELLS);
+    let form = FreeForm::cells(extent, force.axis, CELLS);
     let with = With::new(program, &[&form]);
     let posterior = Posterior::new(&with)?;
-    let likeliest = highest(looks).map(|look| &look.tangent);
+    let likeliest = highest(&force.looks).map(|look| &look.tangent);
     let besides = likeliest.map(|tangent| confounded(tangent, extent));
     let sought = Sought::of(&posterior, extent, CELLS);
     let sought = Sought { besides: besides.as_ref(), ..sought };
-    let looks = sought.looks_from(looks)?;
+    let looks = sought.looks_from(&force.looks)?;
     let mixture = proposal(&looks)?;
     let marginal = Marginal::new(sought, looks, program.events() > 1);
-    let learned = learn(&marginal, mixture, effort, seed.child(0))?;
-    integrated(&marginal, &learned, effort, seed.child(1))
+    let learned = learn(&marginal, mixture, EFFORT, seed.child(0))?;
+    integrated(&marginal, &learned, EFFORT, seed.child(1))
 }

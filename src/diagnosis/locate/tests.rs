@@ -186,7 +186,9 @@ fn what_is_left_open_is_what_linear_algebra_says() {
         // 400 draws of weights that are worth a hundred at least: four
         // standard errors of a mean are 0.4 sd, of an sd 0.28 of it.
         let mut all = vec![(found, (square / n).sqrt())];
-        let [band] = &open.bands[..] else { panic!("one axis, one band") };
+        let [Some(band)] = &open.bands[..] else {
+            panic!("one axis, one band")
+        };
         all.extend(band.mean.iter().copied().zip(band.sd.iter().copied()));
         for (i, (found, is)) in all.into_iter().enumerate() {
             let off = (found - mean[i]) / sd[i];

@@ -23,7 +23,6 @@ pub trait RateOf<K: Kind> {
 /// Made by [`law!`](crate::law) from any block that is a [`Friction`].
 pub trait Law:
     RateOf<Plain>
-    + RateOf<Grad<2>>
     + RateOf<Grad<4>>
     + RateOf<Grad<8>>
     + RateOf<Grad<16>>

@@ -23,9 +23,9 @@ const GAP: f64 = 26.0;
 
 /// What the series are called.
 const MEAN_FORCE: &str = "mean";
-const BAND: &str = "90 % band of the whole curve";
-const WHOLE: &str = "the same with what friction could do";
-const CLEAR: &str = "the band leaves zero out";
+const BAND: &str = "90 % band";
+const WHOLE: &str = "90 % band of the whole force";
+const CLEAR: &str = "clear of zero";
 
 const MEAN: Pen = Pen::new(POSTERIOR, 2.0);
 const SURE: Pen = Pen::new(MASS, 3.6);
