@@ -3,9 +3,9 @@
 //! square of the speed from a drag.
 //!
 //! To first order a force f adds J f to the innovations, and a change v of the
-//! parameters S v. With A = J'J, G = J'S and D = S'S, the smooth force W w that
-//! does most nearly what v does has w = (W'AW)^-1 W'G v. The share of it that
-//! it does, v'G'W (W'AW)^-1 W'G v / v'Dv, is the square of a canonical
+//! parameters S v. With A = J'J, G = J'S and D = S'S (and what the priors say
+//! of v), the smooth force W w that does most nearly what v does has
+//! w = (W'AW)^-1 W'G v. The share of it that it does, v'G'W (W'AW)^-1 W'G v / v'Dv, is the square of a canonical
 //! correlation (Hotelling 1936): near 1 along changes of the friction law, near
 //! 0 along those of the errors.
 
@@ -32,14 +32,13 @@ const RIDGE: f64 = 1e-8;
 /// no such change.
 pub(super) fn confounded(tangent: &Tangent, extent: &Extent) -> DMatrix<f64> {
     let cells = tangent.force.len();
-    let all = imitations(tangent, extent);
-    let all = all.filter(|all| all.ncols() > 0);
-    all.map_or(DMatrix::zeros(cells, 0), |all| {
-        all.qr().q() * (cells as f64).sqrt()
-    })
+    let none = || DMatrix::zeros(cells, 0);
+    imitations(tangent, extent)
+        .map_or_else(none, |all| all.qr().q() * (cells as f64).sqrt())
 }
 
-/// A force for each direction of the parameters that one imitates.
+/// A force for each direction of the parameters that one imitates; `None`
+/// where there is no such direction.
 fn imitations(tangent: &Tangent, extent: &Extent) -> Option<DMatrix<f64>> {
     let Tangent { of_force, across, of_own, .. } = tangent;
     let smooth = Process::of_length(extent.run / LENGTHS);
@@ -50,8 +49,9 @@ fn imitations(tangent: &Tangent, extent: &Extent) -> Option<DMatrix<f64>> {
     for i in 0..told.nrows() {
         told[(i, i)] += ridge;
     }
-    let alike = told.cholesky()?.solve(&waves.tr_mul(across));
-    let does = waves.tr_mul(across).tr_mul(&alike);
+    let together = waves.tr_mul(across);
+    let alike = told.cholesky()?.solve(&together);
+    let does = together.tr_mul(&alike);
     // In coordinates of the parameters of which as much is known along each.
     let unit = of_own.clone().cholesky()?.l().try_inverse()?.transpose();
     let shares = SymmetricEigen::new(unit.tr_mul(&(does * &unit)));
