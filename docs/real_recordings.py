@@ -158,21 +158,21 @@ def missing_force(truth):
 
 def within_band(d, s, force):
     """The share of the run over which the force of free form has the missing
-    one in its band; and the same without a level, each less its mean."""
+    one in its band; and the same beside the law, each less its mean."""
     found = next(f for f in d["forces"] if f["coordinate"] == "arclength")
 
-    def share(band, is_level):
+    def share(band, is_whole):
         mean = [interpolated(x, found["at"], band["mean"]) for x in s]
         sd = [interpolated(x, found["at"], band["sd"]) for x in s]
         level = sum(m - f for m, f in zip(mean, force)) / len(s)
-        shift = 0.0 if is_level else level
+        shift = 0.0 if is_whole else level
         inside = (
             abs(m - shift - f) <= band["band"] * width
             for m, f, width in zip(mean, force, sd)
         )
         return sum(inside) / len(s)
 
-    return share(found, True), share(found["besides_law"], False)
+    return share(found, True), share(found["beside_law"], False)
 
 
 def held_against(folder, noise, d):

@@ -230,14 +230,15 @@ impl Subject<'_> {
             self.compared(table, row, after.as_ref(), options, seed)?;
         let open = self.left_open(row, options, seed)?;
         let mut law = self.law(table, open.as_ref(), &compared, options)?;
-        law.corrected.retain(|_| after.is_some());
+        if after.is_none() {
+            law.corrected.clear();
+        }
         let group = group(judged);
-        let rivals = decision.rivals(all, &table.as_it_was()?.none);
         let mut diagnosis = Diagnosis {
             verdict: *verdict,
             quick: options.quick,
             seed: options.seed,
-            rivals,
+            rivals: decision.rivals(all, &table.as_it_was()?.none),
             separating: next_recording(*verdict, &group, judged),
             group,
             mechanisms: judged.clone(),

@@ -80,7 +80,7 @@ pub(crate) struct Integral<R> {
 impl<R> Integral<R> {
     /// As many even draws as the weights are worth, and a hundred at least.
     pub(crate) fn draws(&self, seed: Seed) -> Vec<(&[f64], &R)> {
-        self.whole(self.sum.chosen(seed))
+        self.with_rest(self.sum.chosen(seed))
     }
 
     /// So many even draws. Where few draws weigh most, weights that are cut say
@@ -90,10 +90,10 @@ impl<R> Integral<R> {
         count: usize,
         seed: Seed,
     ) -> Vec<(&[f64], &R)> {
-        self.whole(self.sum.even(count, seed))
+        self.with_rest(self.sum.even(count, seed))
     }
 
-    fn whole(&self, chosen: Vec<usize>) -> Vec<(&[f64], &R)> {
+    fn with_rest(&self, chosen: Vec<usize>) -> Vec<(&[f64], &R)> {
         let of = |i: usize| {
             let (particle, rest) = &self.found[i];
             rest.as_ref().map(|rest| (&particle.z[..], rest))

@@ -102,8 +102,8 @@ impl<K: Kind> Whole<'_, K> {
         }
     }
 
-    /// The same outside of a likelihood: one copy of the filters for all that
-    /// looks at values one by one, which is called for each.
+    /// The same for all but the likelihood: one copy of the filters serves it,
+    /// which calls `visit` for each value.
     fn shown(
         &self,
         at: &Grid,

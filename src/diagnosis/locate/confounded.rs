@@ -5,9 +5,10 @@
 //! To first order a force f adds J f to the innovations, and a change v of the
 //! parameters S v. With A = J'J, G = J'S and D = S'S (and what the priors say
 //! of v), the smooth force W w that does most nearly what v does has
-//! w = (W'AW)^-1 W'G v. The share of it that it does, v'G'W (W'AW)^-1 W'G v / v'Dv, is the square of a canonical
-//! correlation (Hotelling 1936): near 1 along changes of the friction law, near
-//! 0 along those of the errors.
+//! w = (W'AW)^-1 W'G v. The share of it that it does,
+//! v'G'W (W'AW)^-1 W'G v / v'Dv, is the square of a canonical correlation
+//! (Hotelling 1936): near 1 along changes of the friction law, near 0 along
+//! those of the errors.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -28,13 +29,14 @@ const LEAST: f64 = 0.5;
 const RIDGE: f64 = 1e-8;
 
 /// The forces in each cell that do what changes of the model's own parameters
-/// do, as independent columns of mean square 1; none where `tangent` tells of
+/// do, as independent columns of mean square 1; `None` where `tangent` tells of
 /// no such change.
-pub(super) fn confounded(tangent: &Tangent, extent: &Extent) -> DMatrix<f64> {
-    let cells = tangent.force.len();
-    let none = || DMatrix::zeros(cells, 0);
-    imitations(tangent, extent)
-        .map_or_else(none, |all| all.qr().q() * (cells as f64).sqrt())
+pub(super) fn confounded(
+    tangent: &Tangent,
+    extent: &Extent,
+) -> Option<DMatrix<f64>> {
+    let cells = tangent.force.len() as f64;
+    Some(imitations(tangent, extent)?.qr().q() * cells.sqrt())
 }
 
 /// A force for each direction of the parameters that one imitates; `None`

@@ -24,7 +24,7 @@ pub struct Band {
 }
 
 impl Band {
-    /// That of draws of the whole force.
+    /// That of draws of the force in each cell.
     pub(super) fn of(draws: &[Vec<f64>]) -> Self {
         let (mean, sd) = moments(draws);
         let width = simultaneous(draws, &mean, &sd);
@@ -32,14 +32,14 @@ impl Band {
     }
 
     /// Its lower and its upper end in each cell.
-    pub fn ends(&self) -> (Vec<f64>, Vec<f64>) {
+    pub(crate) fn ends(&self) -> (Vec<f64>, Vec<f64>) {
         let each = self.mean.iter().zip(&self.sd);
         let off = |s: &f64| self.width * s;
         each.map(|(m, s)| (m - off(s), m + off(s))).unzip()
     }
 
     /// The sign of the force where it leaves zero out, else 0.
-    pub fn sign(&self, cell: usize) -> f64 {
+    pub(crate) fn sign(&self, cell: usize) -> f64 {
         let mean = self.mean[cell];
         let is_clear = mean.abs() > self.width * self.sd[cell];
         if is_clear { mean.signum() } else { 0.0 }

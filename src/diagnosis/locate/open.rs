@@ -90,8 +90,8 @@ fn whole(
     let form = FreeForm::cells(extent, force.axis, CELLS);
     let with = With::new(program, &[&form]);
     let posterior = Posterior::new(&with)?;
-    let likeliest = highest(&force.looks).map(|look| &look.tangent);
-    let besides = likeliest.map(|tangent| confounded(tangent, extent));
+    let besides = highest(&force.looks)
+        .and_then(|look| confounded(&look.tangent, extent));
     let sought = Sought::of(&posterior, extent, CELLS);
     let sought = Sought { besides: besides.as_ref(), ..sought };
     let looks = sought.looks_from(&force.looks)?;

@@ -210,7 +210,7 @@ fn on_an_even_slope_a_force_without_shape_is_a_friction() {
     let sought = Sought::of(&posterior, &extent, CELLS);
     let looks = sought.looks(&[MU.0], COARSE).unwrap();
     let tangent = &highest(&looks).unwrap().tangent;
-    let found = confounded::confounded(tangent, &extent);
+    let found = confounded::confounded(tangent, &extent).unwrap();
     assert_eq!(found.ncols(), 1);
     // But for the ridge that keeps it finite.
     let sign = found[0].signum();

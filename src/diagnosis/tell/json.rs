@@ -117,7 +117,7 @@ fn force_json(force: &FreeForce) -> Value {
     let mut out = band_json(whole);
     out["coordinate"] = axis_name(force.axis).into();
     out["at"] = json!(force.at);
-    out["besides_law"] = band_json(&force.band);
+    out["beside_law"] = band_json(&force.band);
     out["log10_bayes_factor"] = json!(force.log_bayes_factor / LN_10);
     out
 }
