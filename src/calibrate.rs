@@ -1,7 +1,5 @@
 //! A whole calibration: inference, predictions, checks, as one report.
 
-use rayon::prelude::*;
-
 use crate::draws::{self, Draws, Summary, summarise};
 use crate::error::{Error, Result, Stop};
 use crate::infer::{
@@ -11,6 +9,7 @@ use crate::infer::{
 use crate::mechanism::Role;
 use crate::model::{Assembled, Point, Posterior};
 use crate::observe::Series;
+use crate::parallel;
 use crate::physics::State;
 use crate::predict::{Bands, posterior_checked, prior_predictive};
 use crate::prior::{AnyPrior, Distribution};
@@ -249,31 +248,27 @@ fn parameters(
 ) -> Vec<ParameterReport> {
     let rows = draws.thinned(SCATTER);
     let priors: Vec<_> = model.priors().collect();
-    summaries
-        .par_iter()
-        .enumerate()
-        .map(|(i, summary)| {
-            let (_, prior) = priors[i];
-            let curve = curve(prior, draws, i);
-            // A length's prior is another wherever the stretch begins.
-            let (also, alone) = match model.role(i) {
-                Role::Length { until } => {
-                    (format!(", ending by {until:.4}"), Vec::new())
-                }
-                _ => (String::new(), prior_curve(prior, &curve)),
-            };
-            ParameterReport {
-                of_errors: !model.is_of_motion(i),
-                map: mode.map(|m| m.natural[i]),
-                prior_text: format!("{prior}{also}"),
-                prior_density: alone,
-                posterior_density: curve,
-                chains: draws.column(i).iter().map(|c| thin(c)).collect(),
-                pooled: rows.iter().map(|row| row[i]).collect(),
-                ..of_summary(summary)
+    parallel::map(summaries.iter().enumerate(), |(i, summary)| {
+        let (_, prior) = priors[i];
+        let curve = curve(prior, draws, i);
+        // A length's prior is another wherever the stretch begins.
+        let (also, alone) = match model.role(i) {
+            Role::Length { until } => {
+                (format!(", ending by {until:.4}"), Vec::new())
             }
-        })
-        .collect()
+            _ => (String::new(), prior_curve(prior, &curve)),
+        };
+        ParameterReport {
+            of_errors: !model.is_of_motion(i),
+            map: mode.map(|m| m.natural[i]),
+            prior_text: format!("{prior}{also}"),
+            prior_density: alone,
+            posterior_density: curve,
+            chains: draws.column(i).iter().map(|c| thin(c)).collect(),
+            pooled: rows.iter().map(|row| row[i]).collect(),
+            ..of_summary(summary)
+        }
+    })
 }
 
 /// A parameter's figures, from a summary of its draws.

@@ -12,8 +12,6 @@
 //! innovation is predicted by parameters fitted to the others, not how well a
 //! missing value is. Leave-future-out has no such flaw.
 
-use rayon::prelude::*;
-
 use crate::draws::{
     self, Draws, Lfo, Loo, k_threshold, loo_of_chains, relative_efficiency,
     sum_and_error,
@@ -21,6 +19,7 @@ use crate::draws::{
 use crate::error::{Error, Result};
 use crate::infer::{Backend, Progress, Quiet, infer};
 use crate::model::{Assembled, Point, Posterior};
+use crate::parallel;
 use crate::seed::Seed;
 
 /// The most draws that an estimate is made of: the tail of the weights is
@@ -49,8 +48,7 @@ pub fn pointwise(
     let length = one.first().map(log_density).transpose()?.flatten();
     let most = MOST_NUMBERS / length.map_or(1, |l| l.len()).max(1);
     let rows = draws.thinned(MOST_DRAWS.min(most.max(100)));
-    let table =
-        rows.par_iter().map(log_density).collect::<Result<Vec<_>>>()?;
+    let table = parallel::try_map(&rows, log_density)?;
     let Some(data) = table.iter().flatten().map(Vec::len).next() else {
         return Err(Error::inference("no draw has a flow to predict with"));
     };

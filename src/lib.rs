@@ -122,6 +122,7 @@ pub mod model;
 pub mod noise;
 pub mod observe;
 pub mod ode;
+mod parallel;
 pub mod physics;
 pub mod population;
 pub mod predict;

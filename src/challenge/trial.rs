@@ -1,11 +1,10 @@
 //! Cases put to a diagnosis, one after the other or side by side.
 
-use rayon::prelude::*;
-
 use super::case::Case;
 use super::score::{Answer, Outcome, Score};
 use crate::error::Result;
 use crate::infer::{Progress, part};
+use crate::parallel;
 
 /// What a diagnosis is for the challenge: an answer to a case.
 ///
@@ -56,7 +55,7 @@ pub fn run(
         Ok(Outcome { case, truth, answer })
     };
     let outcomes: Vec<Result<Outcome>> = if parallel {
-        cases.par_iter().map(answer).collect()
+        parallel::map(cases, answer)
     } else {
         cases.iter().map(answer).collect()
     };

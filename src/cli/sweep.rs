@@ -7,7 +7,6 @@ use std::time::{Duration, Instant};
 
 use clap::error::ErrorKind;
 use clap::{Args, ValueEnum};
-use rayon::prelude::*;
 use serde_json::Value;
 
 use super::answer::{Answer, wrapped};
@@ -20,6 +19,7 @@ use super::results::{Results, folder};
 use crate::error::{Error, Result};
 use crate::infer::Progress as _;
 use crate::io::place;
+use crate::parallel;
 use crate::physics::friction::Laws;
 #[cfg(feature = "export")]
 use crate::sweep::write_parquet;
@@ -305,11 +305,11 @@ impl Arguments {
     fn planned(&self, list: Vec<Listed>) -> Planned {
         let shard = self.shard.unwrap_or(Shard::ALL);
         let (mut tasks, mut unread) = (Vec::new(), BTreeMap::new());
-        let own = (0..list.len()).into_par_iter();
-        let own = own.filter(|at| shard.takes(*at)).map(|at| {
+        let own = (0..list.len()).filter(|at| shard.takes(*at));
+        let own = parallel::map(own, |at| {
             (at, Task::new(self.verb.name(), &self.options, &list, at))
         });
-        for (at, task) in own.collect::<Vec<_>>() {
+        for (at, task) in own {
             match task {
                 Ok(task) => tasks.push(task),
                 Err(error) => {

@@ -1,7 +1,5 @@
 //! From a posterior and its draws to the groups of an InferenceData.
 
-use rayon::prelude::*;
-
 use super::data::{Group, InferenceData, LeftOut, Values, Variable};
 use super::heard::{Heard, Origin, hear};
 use super::recorded::{Data, Recorded};
@@ -10,6 +8,7 @@ use super::vector::{Named, variables};
 use crate::draws::{Draws, loo_of_chains, relative_efficiency};
 use crate::error::{Error, Result};
 use crate::model::{Point, Posterior};
+use crate::parallel;
 use crate::seed::Seed;
 
 /// The most numbers that a group has for each draw and datum: 80 MB.
@@ -160,10 +159,9 @@ fn at_each(
     rows: &[&[f64]],
     seed: Seed,
 ) -> Result<Vec<Option<Heard>>> {
-    let one = |(i, row): (usize, &&[f64])| {
-        hear(posterior, Origin::Row(row), seed.child(i as u64))
-    };
-    rows.par_iter().enumerate().map(one).collect()
+    parallel::try_map((0..).zip(rows), |(i, row)| {
+        hear(posterior, Origin::Row(row), seed.child(i))
+    })
 }
 
 fn left_out(
@@ -213,8 +211,7 @@ fn from_prior(
     let most = scope.most_numbers / values.max(1);
     let asked = scope.prior_draws.min(most) as u64;
     let one = |i: u64| hear(posterior, Origin::Prior, seed.child(i));
-    let heard: Vec<Option<Heard>> =
-        (0..asked).into_par_iter().map(one).collect::<Result<_>>()?;
+    let heard: Vec<Option<Heard>> = parallel::try_map(0..asked, one)?;
     let heard: Vec<_> = heard.into_iter().filter(Option::is_some).collect();
     if heard.is_empty() {
         return Ok(Vec::new());

@@ -4,8 +4,6 @@
 //! lean towards the places that they happened to meet, and towards too small
 //! an error.
 
-use rayon::prelude::*;
-
 use super::adapt::Frozen;
 use super::proposal::{Base, Particle, population};
 use super::schedule::Schedule;
@@ -13,6 +11,7 @@ use super::weights::{quality, summed};
 use super::{Evidence, Inference, draws_of};
 use crate::error::Result;
 use crate::model::Posterior;
+use crate::parallel;
 use crate::seed::Seed;
 
 /// How sharp an estimate has to be.
@@ -105,14 +104,11 @@ pub(super) fn concluded(
     seed: Seed,
 ) -> Result<Inference> {
     let sum = summed(found)?;
-    let rows = sum
-        .chosen(seed)
-        .par_iter()
-        .map(|&i| posterior.natural(&found[i].z))
-        .collect::<Result<Vec<_>>>()?
-        .concat();
+    let rows = parallel::try_map(sum.chosen(seed), |i| {
+        posterior.natural(&found[i].z)
+    })?;
     let mut draws = draws_of(posterior)?;
-    draws.push_chain(rows, None)?;
+    draws.push_chain(rows.concat(), None)?;
     Ok(Inference {
         draws: Some(draws),
         evidence: Some(Evidence {

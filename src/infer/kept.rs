@@ -1,10 +1,9 @@
 //! What a model keeps beside its parameters, at every draw.
 
-use rayon::prelude::*;
-
 use crate::draws::Draws;
 use crate::error::{Error, Result};
 use crate::model::{Label, Listener, Point, Posterior};
+use crate::parallel;
 use crate::scalar::Plain;
 use crate::seed::{Rng, Seed};
 
@@ -31,14 +30,13 @@ pub fn kept(
     let mut found = Draws::new(names, units)?;
     for chain in 0..draws.chains() {
         let seed = seed.child(chain as u64);
-        let rows = (0..draws.iterations()).into_par_iter().map(|i| {
+        let rows = parallel::try_map(0..draws.iterations(), |i| {
             let row = draws.row(chain, i);
             let one = heard(posterior, row, seed.child(i as u64))?;
             one.values_of(found.names())
-        });
-        let rows = rows.collect::<Result<Vec<_>>>()?.concat();
+        })?;
         let acceptance = draws.acceptance().get(chain).copied();
-        found.push_chain(rows, acceptance)?;
+        found.push_chain(rows.concat(), acceptance)?;
     }
     Ok(Some(found))
 }

@@ -8,13 +8,12 @@
 //! Pitt, Kohn 2013). The mixture learns from rounds of draws, is frozen, and
 //! fresh draws make the estimate, as with the Laplace mixture.
 
-use rayon::prelude::*;
-
 use super::adapt::{fitted, reweighted};
 use super::proposal::{Base, Mixture, Particle};
 use super::weights::{Sum, log_mean_weight, quality, summed_cut};
 use crate::error::Result;
 use crate::model::Posterior;
+use crate::parallel;
 use crate::seed::{Rng, Seed};
 
 /// A posterior of which a few coordinates are drawn, the outer ones.
@@ -161,18 +160,15 @@ fn drawn<O: Outer>(
     count: usize,
     seed: Seed,
 ) -> Result<Vec<(Particle, Option<O::Rest>)>> {
-    (0..count)
-        .into_par_iter()
-        .map(|i| {
-            let seed = seed.child(i as u64);
-            let mut rng = seed.child(0).rng();
-            let Some((z, base)) = proposed(outer, mixture, &mut rng)? else {
-                return Ok((Particle::without_density(0), None));
-            };
-            let held = outer.held(&z, seed.child(1))?;
-            Ok((Particle::new(z, base, held.log), held.rest))
-        })
-        .collect()
+    parallel::try_map(0..count as u64, |i| {
+        let seed = seed.child(i);
+        let mut rng = seed.child(0).rng();
+        let Some((z, base)) = proposed(outer, mixture, &mut rng)? else {
+            return Ok((Particle::without_density(0), None));
+        };
+        let held = outer.held(&z, seed.child(1))?;
+        Ok((Particle::new(z, base, held.log), held.rest))
+    })
 }
 
 /// A draw of the outer coordinates with ln of the proposal's density; `None`

@@ -5,12 +5,12 @@
 //! climb. It looks at places, and goes on from those that hold most.
 
 use nalgebra::DVector;
-use rayon::prelude::*;
 
 use super::climb::{Held, Peak, climb_holding};
 use super::proposal::Component;
 use crate::error::Result;
 use crate::model::{Point, Posterior};
+use crate::parallel;
 
 /// Places along some coordinates, which are held there.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,9 +80,8 @@ pub(super) fn glanced<'s>(
     posterior: &Posterior<'_>,
     grid: &'s HeldGrid,
 ) -> Result<Vec<Looked<'s>>> {
-    let places = grid.places.par_iter();
-    let found = places.map(|place| glance(posterior, grid, place));
-    let found = found.collect::<Result<Vec<_>>>()?;
+    let glance = |place| glance(posterior, grid, place);
+    let found = parallel::try_map(&grid.places, glance)?;
     Ok(found.into_iter().flatten().collect())
 }
 

@@ -10,12 +10,12 @@
 //! of normality: Bates and Watts 1988, chapter 6).
 
 use nalgebra::DVector;
-use rayon::prelude::*;
 
 use super::climb::{Peak, climb_holding};
 use super::proposal::Component;
 use crate::error::Result;
 use crate::model::Posterior;
+use crate::parallel;
 
 /// A stride, in widths of the peak.
 const STRIDE: f64 = 1.3;
@@ -52,11 +52,7 @@ pub(super) fn profiles<'p>(
 ) -> Result<Met> {
     let all = peaks.flat_map(Profile::all);
     let all = all.filter(|profile| !left_out.contains(&profile.along));
-    let met = all
-        .collect::<Vec<_>>()
-        .into_par_iter()
-        .map(|profile| profile.walked(posterior))
-        .collect::<Result<Vec<_>>>()?;
+    let met = parallel::try_map(all, |profile| profile.walked(posterior))?;
     let mut all = Met::default();
     for one in met {
         all.components.extend(one.components);

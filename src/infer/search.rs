@@ -12,7 +12,6 @@
 use std::ops::Range;
 
 use nalgebra::DVector;
-use rayon::prelude::*;
 
 use super::climb::{Climb, Peak};
 use super::places::{
@@ -24,6 +23,7 @@ use super::schedule::Schedule;
 use super::start::likely;
 use crate::error::Result;
 use crate::model::Posterior;
+use crate::parallel;
 use crate::seed::Seed;
 
 /// Where to look for modes.
@@ -113,10 +113,10 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
         space: &SearchSpace,
         seed: Seed,
     ) -> Result<()> {
-        let drawn = (0..space.prior_starts)
-            .into_par_iter()
-            .map(|i| likely(self.posterior, seed.child(i as u64)))
-            .collect::<Result<Vec<_>>>()?;
+        let posterior = self.posterior;
+        let drawn = parallel::try_map(0..space.prior_starts, |i| {
+            likely(posterior, seed.child(i as u64))
+        })?;
         let starts = space.starts.iter().cloned();
         for start in starts.chain(drawn.into_iter().flatten()) {
             self.climb(&start)?;
@@ -152,20 +152,17 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
     fn look(&mut self, space: &'s SearchSpace) -> Result<Vec<Looked<'s>>> {
         let (posterior, negligible) =
             (self.posterior, self.schedule.negligible);
-        let grids = space.grids.par_iter().map(|grid| {
+        let found = parallel::try_map(&space.grids, |grid| {
             let glanced = glanced(posterior, grid)?;
             match grid.held.len() {
                 1 => walked(posterior, glanced, negligible),
                 _ => Ok(glanced),
             }
-        });
-        let found = grids.collect::<Result<Vec<_>>>()?;
+        })?;
         let mut found: Vec<Looked<'s>> = found.into_iter().flatten().collect();
         by_height(&mut found);
         let mut promising = spread(&mut found, self.schedule.promising);
-        promising
-            .par_iter_mut()
-            .try_for_each(|one| one.climb_on(posterior, FEW))?;
+        parallel::try_map(&mut promising, |one| one.climb_on(posterior, FEW))?;
         by_height(&mut promising);
         let most = (places_of(space) / 4).max(LEAST_CLIMBED);
         let best = promising.iter().take(most.min(self.schedule.climbed));
@@ -188,7 +185,7 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
             }
             left = left.saturating_sub(next.len());
             let posterior = self.posterior;
-            next.par_iter_mut().try_for_each(|step| {
+            parallel::try_map(&mut next, |step| {
                 step.to.climb_on(posterior, STEPS_ASIDE)
             })?;
             for step in next {

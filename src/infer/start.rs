@@ -6,10 +6,10 @@
 //! one of two far modes with 5 of 20 seeds, and agreed.
 
 use rand_distr::{Distribution, StandardNormal};
-use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::model::{Point, Posterior};
+use crate::parallel;
 use crate::seed::{Rng, Seed};
 
 /// How many draws from the prior compete for a chain's start.
@@ -91,14 +91,11 @@ pub(super) fn apart(
     chains: usize,
     seed: Seed,
 ) -> Result<Vec<Vec<f64>>> {
-    let mut good = (0..(CHOICE * chains) as u64)
-        .into_par_iter()
-        .map(|i| {
-            let start = best_start(posterior, &mut seed.child(i).rng())?;
-            let height = posterior.density(Point::Natural(&start))?.natural();
-            Ok((height, posterior.line(&start)?, start))
-        })
-        .collect::<Result<Vec<_>>>()?;
+    let mut good = parallel::try_map(0..(CHOICE * chains) as u64, |i| {
+        let start = best_start(posterior, &mut seed.child(i).rng())?;
+        let height = posterior.density(Point::Natural(&start))?.natural();
+        Ok((height, posterior.line(&start)?, start))
+    })?;
     good.sort_by(|a, b| b.0.total_cmp(&a.0));
     let lines: Vec<&[f64]> = good.iter().map(|g| &g.1[..]).collect();
     let chosen = far_apart(&lines, chains);

@@ -1,10 +1,9 @@
 //! Whether the members' draws are enough to tell the population by.
 
-use rayon::prelude::*;
-
 use super::hyper::{Hyper, Law};
 use super::pooled::{Pooled, Shared};
 use crate::draws::Draws;
+use crate::parallel;
 
 /// How many draws of the population the halves are compared at.
 const LAWS: usize = 400;
@@ -28,7 +27,7 @@ pub(super) fn with_errors(
     let rows = draws.thinned(LAWS);
     let laws: Vec<Law> = rows.iter().map(|row| hyper.law(row)).collect();
     let logs: Vec<[f64; 2]> =
-        laws.par_iter().map(|law| against_whole(hyper, law)).collect();
+        parallel::map(&laws, |law| against_whole(hyper, law));
     let mean = |half: usize, column: usize| {
         let logs = logs.iter().map(|log| log[half]);
         let most = logs.clone().fold(f64::NEG_INFINITY, f64::max);

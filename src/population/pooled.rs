@@ -1,11 +1,11 @@
 //! What a population says: of itself, of the next member, and of each.
 
 use rand::RngExt;
-use rayon::prelude::*;
 
 use super::hyper::Hyper;
 use super::member::Member;
 use crate::draws::{Draws, quantile};
+use crate::parallel;
 use crate::seed::Seed;
 
 /// The levels that are told.
@@ -119,7 +119,7 @@ pub(super) fn members(
             .unzip();
         Pooled { name: member.name.clone(), alone, pooled, effective }
     };
-    members.par_iter().zip(&hyper.members).map(of).collect()
+    parallel::map(members.iter().zip(&hyper.members), of)
 }
 
 /// Quantiles of values with weights.

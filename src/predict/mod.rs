@@ -5,13 +5,12 @@ mod statistics;
 
 pub use statistics::Statistic;
 
-use rayon::prelude::*;
-
 use crate::draws::{Draws, quantile};
 use crate::error::{Error, Outcome, Result};
 use crate::model::{Listener, Model, Point, Posterior, Replicates};
 use crate::noise::Noise;
 use crate::observe::Series;
+use crate::parallel;
 use crate::prior::Distribution;
 use crate::scalar::{Plain, Real};
 use crate::seed::{Rng, Seed};
@@ -114,15 +113,11 @@ pub fn prior_predictive(
 ) -> Result<Bands> {
     posterior.require_proper("a prior predictive band")?;
     let count = count.min(draws_for(times.len()));
-    let pairs = (0..count as u64)
-        .into_par_iter()
-        .map(|i| {
-            let mut rng = seed.child(i).rng();
-            let all =
-                replicate(posterior, Point::Prior(&mut rng), seed.child(i))?;
-            Ok(all.and_then(|all| all.into_iter().next()))
-        })
-        .collect::<Result<Vec<_>>>()?;
+    let pairs = parallel::try_map(0..count as u64, |i| {
+        let mut rng = seed.child(i).rng();
+        let all = replicate(posterior, Point::Prior(&mut rng), seed.child(i))?;
+        Ok(all.and_then(|all| all.into_iter().next()))
+    })?;
     bands(&pairs.iter().flatten().collect::<Vec<_>>(), times)
 }
 
@@ -135,10 +130,9 @@ fn replicates(
     seed: Seed,
 ) -> Result<Vec<Option<Vec<Pair>>>> {
     let rows = draws.thinned(draws_for(length));
-    let one = |(i, row): (usize, &&[f64])| {
-        replicate(posterior, Point::Natural(row), seed.child(i as u64))
-    };
-    rows.par_iter().enumerate().map(one).collect()
+    parallel::try_map((0..).zip(rows), |(i, row)| {
+        replicate(posterior, Point::Natural(row), seed.child(i))
+    })
 }
 
 /// The flow at a point and one replicate of each recording; `None` where the

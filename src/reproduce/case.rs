@@ -1,7 +1,5 @@
 //! Figures 4 to 7 and Table 6 on one series.
 
-use rayon::prelude::*;
-
 use super::experiment::{PRINTED, Priors, WIDE, Which, model};
 use crate::calibrate::calibrate;
 use crate::draws::{Draws, density, quantile};
@@ -9,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::infer::{Effort, MetropolisHastings, Quiet, infer};
 use crate::model::{Assembled, Posterior};
 use crate::observe::Event;
+use crate::parallel;
 use crate::report::CalibrationReport;
 use crate::seed::Seed;
 
@@ -59,18 +58,16 @@ pub(super) fn case(event: &Event, seed: u64) -> Result<Case> {
 /// the mass never comes.
 fn median_speed(model: &Assembled, draws: &Draws, places: &[f64]) -> Vec<f64> {
     let times: Vec<f64> = (0..=600).map(|i| 0.1 * f64::from(i)).collect();
-    let speeds: Vec<Vec<f64>> = draws
-        .thinned(1000)
-        .par_iter()
-        .filter_map(|row| model.motion(row, &times).ok())
-        .map(|states| {
-            let path: Vec<(f64, f64)> = states
-                .iter()
-                .map(|s| (s.distance.value(), s.speed.value()))
-                .collect();
-            places.iter().map(|s| speed_at(&path, *s)).collect()
-        })
-        .collect();
+    let speeds = parallel::map(draws.thinned(1000), |row| {
+        let states = model.motion(row, &times).ok()?;
+        let path: Vec<(f64, f64)> = states
+            .iter()
+            .map(|s| (s.distance.value(), s.speed.value()))
+            .collect();
+        let speeds = places.iter().map(|s| speed_at(&path, *s));
+        Some(speeds.collect::<Vec<f64>>())
+    });
+    let speeds: Vec<_> = speeds.into_iter().flatten().collect();
     (0..places.len())
         .map(|i| {
             let mut column: Vec<f64> = speeds.iter().map(|s| s[i]).collect();
@@ -144,33 +141,30 @@ pub(super) fn sensitivity(
     seed: Seed,
 ) -> Result<Vec<Sensitivity>> {
     let effort = Effort { chains: 2, draws: 20_000, warmup: 10_000 };
-    sets()
-        .into_par_iter()
-        .map(|(set, which, priors)| {
-            let model = model(event.clone(), which, &priors)?;
-            let posterior = Posterior::new(&model)?;
-            let walk = MetropolisHastings::adaptive(&effort);
-            let seed = seed.child(set as u64).child(which as u64);
-            let found = infer(&walk, &posterior, seed, &Quiet)?;
-            let draws = found
-                .draws
-                .ok_or_else(|| Error::inference("the walk left no draws"))?;
-            let summaries = found.summaries;
-            Ok(Sensitivity {
-                set,
-                which,
-                priors,
-                quantiles: summaries
-                    .iter()
-                    .map(|s| (s.name.clone(), [s.q05, s.q50, s.q95]))
-                    .collect(),
-                densities: (0..summaries.len())
-                    .map(|i| curve(&model, &draws, i))
-                    .collect(),
-                rhat: summaries.iter().map(|s| s.rhat).fold(1.0, f64::max),
-            })
+    parallel::try_map(sets(), |(set, which, priors)| {
+        let model = model(event.clone(), which, &priors)?;
+        let posterior = Posterior::new(&model)?;
+        let walk = MetropolisHastings::adaptive(&effort);
+        let seed = seed.child(set as u64).child(which as u64);
+        let found = infer(&walk, &posterior, seed, &Quiet)?;
+        let draws = found
+            .draws
+            .ok_or_else(|| Error::inference("the walk left no draws"))?;
+        let summaries = found.summaries;
+        Ok(Sensitivity {
+            set,
+            which,
+            priors,
+            quantiles: summaries
+                .iter()
+                .map(|s| (s.name.clone(), [s.q05, s.q50, s.q95]))
+                .collect(),
+            densities: (0..summaries.len())
+                .map(|i| curve(&model, &draws, i))
+                .collect(),
+            rhat: summaries.iter().map(|s| s.rhat).fold(1.0, f64::max),
         })
-        .collect()
+    })
 }
 
 fn curve(

@@ -1,6 +1,5 @@
 //! Table 5 and Figure 8: how often 90 % intervals hold the truth.
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::experiment::{Priors, TRUTH, Which, model, plan, series};
@@ -12,6 +11,7 @@ use crate::infer::{
 };
 use crate::model::Posterior;
 use crate::observe::{Event, Series};
+use crate::parallel;
 use crate::seed::Seed;
 
 /// One model over all series.
@@ -141,13 +141,10 @@ fn fit(posterior: &Posterior<'_>, seed: Seed) -> Result<Fit> {
 /// whose errors carry them off the track.
 pub(super) fn synthetic(samples: usize, seed: Seed) -> Result<Vec<Series>> {
     let plan = plan(1.0, 0.0)?;
-    let made = (0..samples as u64)
-        .into_par_iter()
-        .map(|i| {
-            let series = series(&plan, TRUTH, seed.child(i))?;
-            Ok(recorded(&plan, &series)?.map(|_| series))
-        })
-        .collect::<Result<Vec<_>>>()?;
+    let made = parallel::try_map(0..samples as u64, |i| {
+        let series = series(&plan, TRUTH, seed.child(i))?;
+        Ok(recorded(&plan, &series)?.map(|_| series))
+    })?;
     Ok(made.into_iter().flatten().collect())
 }
 
@@ -172,19 +169,15 @@ pub(super) fn study(
 ) -> Result<PriorStudy> {
     let plan = plan(1.0, 0.0)?;
     let of = |which: Which| -> Result<ModelStudy> {
-        let fits = seen
-            .par_iter()
-            .enumerate()
-            .map(|(i, series)| {
-                let seed = seed.child(which as u64).child(i as u64);
-                let fit = part(progress, &format!("fit of {seed:?}"), || {
-                    let event = plan.with_recording(series.clone())?;
-                    asked(event, which, &priors, |p| fit(p, seed))
-                });
-                progress.advance(1);
-                fit
-            })
-            .collect::<Result<Vec<_>>>()?;
+        let fits = parallel::try_map((0..).zip(seen), |(i, series)| {
+            let seed = seed.child(which as u64).child(i);
+            let fit = part(progress, &format!("fit of {seed:?}"), || {
+                let event = plan.with_recording(series.clone())?;
+                asked(event, which, &priors, |p| fit(p, seed))
+            });
+            progress.advance(1);
+            fit
+        })?;
         Ok(gathered(which, &fits))
     };
     let models = [of(Which::M0)?, of(Which::M1)?];
@@ -255,17 +248,14 @@ pub(super) fn reading(
     progress: &dyn Progress,
     draw: &(dyn Fn(Seed) -> Result<Series> + Sync),
 ) -> Result<Reading> {
-    let found = (0..samples as u64)
-        .into_par_iter()
-        .map(|i| {
-            let seed = seed.child(i);
-            let both = part(progress, &format!("{what}, {seed:?}"), || {
-                exact(plan, priors, seed, draw)
-            });
-            progress.advance(1);
-            both
-        })
-        .collect::<Result<Vec<_>>>()?;
+    let found = parallel::try_map(0..samples as u64, |i| {
+        let seed = seed.child(i);
+        let both = part(progress, &format!("{what}, {seed:?}"), || {
+            exact(plan, priors, seed, draw)
+        });
+        progress.advance(1);
+        both
+    })?;
     let found: Vec<_> = found.into_iter().flatten().collect();
     let log10_bf = found
         .iter()

@@ -15,13 +15,13 @@ mod models;
 pub use choices::{Choice, Choices, Held};
 pub use models::{Remaking, choices};
 
-use rayon::prelude::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::error::{Error, Result};
 use crate::infer::{Backend, Progress, Quiet, part};
 use crate::model::{Model, Point, Posterior};
 use crate::observe::Series;
+use crate::parallel;
 use crate::predict::simulate;
 use crate::seed::Seed;
 
@@ -90,17 +90,14 @@ pub fn ranks(
     let mut names: Vec<String> =
         prior.parameters().iter().map(|p| p.name.clone()).collect();
     names.push("log likelihood".to_owned());
-    let rows = (0..replications as u64)
-        .into_par_iter()
-        .map(|i| {
-            let seed = seed.child(i);
-            let row = part(progress, &format!("ranks of {seed:?}"), || {
-                replication(&prior, [remade, fitted], backend, seed)
-            });
-            progress.advance(1);
-            row
-        })
-        .collect::<Result<Vec<_>>>()?;
+    let rows = parallel::try_map(0..replications as u64, |i| {
+        let seed = seed.child(i);
+        let row = part(progress, &format!("ranks of {seed:?}"), || {
+            replication(&prior, [remade, fitted], backend, seed)
+        });
+        progress.advance(1);
+        row
+    })?;
     let ranks = (0..names.len())
         .map(|i| rows.iter().map(|row| row[i]).collect())
         .collect();

@@ -3,7 +3,6 @@
 //! probability of every model given that recording.
 
 use rand::RngExt;
-use rayon::prelude::*;
 
 use super::REDRAWS;
 use super::choices::{Choice, Choices};
@@ -13,6 +12,7 @@ use crate::infer::{Progress, Quiet};
 use crate::mechanism::Mechanism;
 use crate::model::{AnyProgram, Posterior, Program, With};
 use crate::observe::Series;
+use crate::parallel;
 use crate::predict::simulate;
 use crate::seed::{Rng, Seed};
 
@@ -44,14 +44,11 @@ pub fn choices<P: Program>(
         beforehand.into_iter().unzip();
     let models = Models { program, catalogue, names: &names, prior: &prior };
     progress.begin("drawing models", Some(replications as u64));
-    let cases = (0..replications as u64)
-        .into_par_iter()
-        .map(|i| {
-            let case = models.case(remade, seed.child(i));
-            progress.advance(1);
-            case
-        })
-        .collect::<Result<Vec<_>>>()?;
+    let cases = parallel::try_map(0..replications as u64, |i| {
+        let case = models.case(remade, seed.child(i));
+        progress.advance(1);
+        case
+    })?;
     Ok(Choices { names, prior, cases })
 }
 

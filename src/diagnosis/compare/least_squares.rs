@@ -6,12 +6,12 @@
 
 use argmin::core::CostFunction;
 use nalgebra::DVector;
-use rayon::prelude::*;
 
 use crate::diagnosis::evidence::fit::Fit;
 use crate::error::Result;
 use crate::infer::simplex::{WALL, descend};
 use crate::model::{Point, Posterior};
+use crate::parallel;
 use crate::predict::rmse;
 
 /// How many searches start, each from a simplex of posterior draws.
@@ -60,11 +60,9 @@ pub(crate) fn least_squares(
         .into_iter()
         .map(|row| Ok(DVector::from_vec(posterior.line(row)?)))
         .collect::<Result<Vec<_>>>()?;
-    let searches: Vec<f64> = lines
-        .par_chunks_exact(corners)
-        .filter_map(|simplex| search(misfit, simplex))
-        .collect();
-    let flows = searches.into_iter().filter(|e| *e < WALL);
+    let simplices = lines.chunks_exact(corners);
+    let found = parallel::map(simplices, |simplex| search(misfit, simplex));
+    let flows = found.into_iter().flatten().filter(|e| *e < WALL);
     Ok(flows.fold(f64::NAN, f64::min))
 }
 

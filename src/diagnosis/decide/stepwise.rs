@@ -11,8 +11,6 @@
 use std::collections::BTreeSet;
 use std::f64::consts::LN_10;
 
-use rayon::prelude::*;
-
 use crate::diagnosis::decide::chosen::Chosen;
 use crate::diagnosis::decide::judge::Beforehand;
 use crate::diagnosis::evidence::attribute::Attribution;
@@ -24,6 +22,7 @@ use crate::error::Result;
 use crate::infer::Precision;
 use crate::mechanism::Mechanism;
 use crate::model::AnyProgram;
+use crate::parallel;
 use crate::seed::Seed;
 
 /// In log10: by how much a further term must raise the evidence, besides what
@@ -134,8 +133,8 @@ impl<'a> Stepwise<'a> {
     /// chosen and than each other, or nearly so: all are looked at, those that
     /// promise most are fitted first.
     fn fits(&self, chosen: &Chosen, steps: &[Step]) -> Result<Vec<Tried<'a>>> {
-        let looks = steps.par_iter().map(|step| self.look(chosen, step));
-        let mut left = looks.collect::<Result<Vec<Look<'_>>>>()?;
+        let look = |step| self.look(chosen, step);
+        let mut left: Vec<Look<'_>> = parallel::try_map(steps, look)?;
         left.sort_by(|a, b| b.promise().total_cmp(&a.promise()));
         let mut least = self.worth_of(chosen);
         let near = RISE * LN_10;
@@ -151,8 +150,7 @@ impl<'a> Stepwise<'a> {
             }
             let rest = left.split_off(left.len().min(AT_ONCE));
             let hurdle = least - near;
-            let fits = left.into_par_iter().map(|l| self.tried(l, hurdle));
-            let fits = fits.collect::<Result<Vec<_>>>()?;
+            let fits = parallel::try_map(left, |l| self.tried(l, hurdle))?;
             for one in fits.into_iter().flatten() {
                 least = least.max(self.worth_of(&one.chosen));
                 found.push(one);
@@ -241,7 +239,7 @@ impl<'a> Stepwise<'a> {
             return Ok(());
         }
         near.push(best);
-        near.par_iter_mut().try_for_each(|one| {
+        parallel::try_map(near, |one| {
             one.chosen.gain = self.gain(&one.chosen)?;
             Ok(())
         })?;

@@ -1,8 +1,6 @@
 //! Which mechanism explains the mismatch: evidence of each, and of several
 //! together.
 
-use rayon::prelude::*;
-
 use super::fit::{Fit, Prospect, fit, prospect, spread};
 use super::grids::even_grids;
 use super::owns::Owns;
@@ -13,6 +11,7 @@ use crate::error::Result;
 use crate::infer::{LaplaceMixture, Precision, Progress, SearchSpace};
 use crate::mechanism::{Extent, Mechanism};
 use crate::model::{AnyProgram, Posterior, With};
+use crate::parallel;
 use crate::physics::forces::Axis;
 use crate::seed::Seed;
 
@@ -215,7 +214,7 @@ impl Weighing<'_> {
             progress.advance(1);
             found
         };
-        which.par_iter().map(look).collect()
+        parallel::try_map(which, look)
     }
 
     /// The same after learning more, of those that may matter beside an
@@ -226,13 +225,12 @@ impl Weighing<'_> {
         known: f64,
     ) -> Result<Vec<Prospect>> {
         let threshold = highest(&prospects, known) - self.care.relevant;
-        let all = self.catalogue.par_iter().enumerate().zip(prospects);
-        all.map(|((i, mechanism), prospect)| {
+        let all = self.catalogue.iter().enumerate().zip(prospects);
+        parallel::try_map(all, |((i, mechanism), prospect)| {
             let seed = self.seed_of(i).child(3);
             let mechanisms = [mechanism.as_ref()];
             prospect.pursued(self.program, &mechanisms, threshold, seed)
         })
-        .collect()
     }
 
     /// How sharply what has such a prospect is worth estimating beside the
@@ -255,8 +253,8 @@ impl Weighing<'_> {
         known: f64,
     ) -> Result<Vec<Fit>> {
         let best = highest(&prospects, known);
-        let all = self.catalogue.par_iter().enumerate().zip(prospects);
-        all.map(|((i, mechanism), prospect)| {
+        let all = self.catalogue.iter().enumerate().zip(prospects);
+        parallel::try_map(all, |((i, mechanism), prospect)| {
             let (mechanisms, seed) =
                 ([mechanism.as_ref()], self.seed_of(i).child(2));
             let precision = self.precision(&prospect, best);
@@ -264,7 +262,6 @@ impl Weighing<'_> {
                 .fit(self.program, &mechanisms, precision, seed)
                 .map_err(|error| error.within(mechanism.name()))
         })
-        .collect()
     }
 }
 

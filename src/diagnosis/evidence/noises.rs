@@ -9,8 +9,6 @@
 use std::f64::consts::LN_10;
 use std::ops::Deref;
 
-use rayon::prelude::*;
-
 use super::carried::carried;
 use super::fit::{Fit, Prospect, fit, prospect};
 use crate::diagnosis::locate::{Outlook, outlook};
@@ -20,6 +18,7 @@ use crate::infer::{LaplaceMixture, Precision, SearchSpace};
 use crate::mechanism::Extent;
 use crate::model::{AnyProgram, Point, Posterior};
 use crate::noise::{self, Form};
+use crate::parallel;
 use crate::seed::Seed;
 
 /// What errors may remember, besides what the named noise says: nothing, or
@@ -226,12 +225,9 @@ impl<'a> Survey<'a, '_> {
                 other.filter(|other| Posterior::new(&**other).is_ok());
             new.extend(allowed.map(|program| (name, program)));
         }
-        let weighed: Vec<Result<(Prospect, Outlook)>> = new
-            .par_iter()
-            .map(|(name, program)| {
-                self.weighed(name, &**program, simpler(name, known))
-            })
-            .collect();
+        let weighed = parallel::map(&new, |(name, program)| {
+            self.weighed(name, &**program, simpler(name, known))
+        });
         // A noise under which nothing has a density is out of the question.
         let found = new.into_iter().zip(weighed);
         let found = found.filter_map(|((name, program), weighed)| {

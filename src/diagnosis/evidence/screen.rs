@@ -7,7 +7,6 @@
 //! (Rao's score test, with what has to be estimated projected out).
 
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 use super::edges::{Edges, on_line};
 use super::others::Others;
@@ -15,6 +14,7 @@ use crate::error::Result;
 use crate::infer::{HeldGrid, HeldPlace};
 use crate::mechanism::{Mechanism, Unknown};
 use crate::model::{Information, Posterior};
+use crate::parallel;
 use crate::prior::{AnyPrior, Distribution, Prior};
 use crate::scalar::{Grad, Plain, Real};
 
@@ -188,14 +188,11 @@ impl Screen<'_, '_> {
     /// The density with a small amplitude from each border on, along it.
     fn along(&self, small: f64) -> Result<Vec<Option<Information>>> {
         let index = self.others.before.len();
-        (0..self.edges.borders())
-            .into_par_iter()
-            .map(|i| {
-                let line = self.line(small, &self.edges.onwards(i));
-                let about = self.posterior.information_along(&line, index)?;
-                Ok(about.density.on_line().is_finite().then_some(about))
-            })
-            .collect()
+        parallel::try_map(0..self.edges.borders(), |i| {
+            let line = self.line(small, &self.edges.onwards(i));
+            let about = self.posterior.information_along(&line, index)?;
+            Ok(about.density.on_line().is_finite().then_some(about))
+        })
     }
 
     /// What the amplitude does from each border on, all else being as with it

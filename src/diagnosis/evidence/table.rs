@@ -1,13 +1,12 @@
 //! The two-way table: every mechanism under every noise that is kept.
 
-use rayon::prelude::*;
-
 use super::attribute::{Attribution, Care, Known, attribute_beside};
 use super::carried::{gain, likeliest};
 use super::noises::{Noises, Noisy};
 use crate::error::{Error, Result};
 use crate::infer::Progress;
 use crate::mechanism::{Extent, Mechanism};
+use crate::parallel;
 use crate::seed::Seed;
 
 /// What the evidence says under one noise.
@@ -175,11 +174,10 @@ impl<'a> Row<'a> {
         let found = first.found()?;
         let from = first.noisy.program();
         let to = (noisy.program(), noisy.own());
-        let fits = catalogue.par_iter().zip(&found.candidates);
-        let gains = fits.map(|(mechanism, fit)| {
+        let fits = catalogue.iter().zip(&found.candidates);
+        let gains = parallel::try_map(fits, |(mechanism, fit)| {
             gain((from, fit), to, &[mechanism.as_ref()], seed)
-        });
-        let gains = gains.collect::<Result<Vec<f64>>>()?;
+        })?;
         let known = first.candidates.iter().zip(gains);
         let candidates = known.map(|(known, gain)| known + gain).collect();
         let open = first.open + noisy.open.log - first.noisy.open.log;

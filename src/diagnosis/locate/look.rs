@@ -2,7 +2,6 @@
 //! parameters are best, the force integrated.
 
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 use super::process::Process;
 use super::tangent::{Cells, Tangent, Waves};
@@ -10,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::infer::{Climb, Landscape, Mixture, Slope};
 use crate::mechanism::Extent;
 use crate::model::Posterior;
+use crate::parallel;
 
 /// A grid of processes: their lengths and sizes.
 #[derive(Debug, Clone, Copy)]
@@ -120,11 +120,10 @@ impl<'a, 'm> Sought<'a, 'm> {
     pub(super) fn looks_from(&self, others: &[Look]) -> Result<Vec<Look>> {
         let best = most(others.iter());
         let near = |l: &&Look| best - l.log_evidence < NEGLIGIBLE;
-        let near: Vec<&Look> = others.iter().filter(near).collect();
-        let looks = near
-            .into_par_iter()
-            .map(|other| self.look(other.process, &other.tangent));
-        Ok(looks.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
+        let looks = parallel::try_map(others.iter().filter(near), |other| {
+            self.look(other.process, &other.tangent)
+        })?;
+        Ok(looks.into_iter().flatten().collect())
     }
 
     /// The looks of the whole grid, from likely own parameters: from small
@@ -158,13 +157,13 @@ impl<'a, 'm> Sought<'a, 'm> {
         sizes: &[f64],
         none: &Tangent,
     ) -> Result<Vec<Look>> {
-        let columns = lengths.into_par_iter().map(|&length| {
+        let columns = parallel::try_map(lengths, |&length| {
             let mut up = self.along(length, sizes.iter(), none, &[])?;
             let down = self.along(length, sizes.iter().rev(), none, &up)?;
             up.extend(down);
             Ok(up)
-        });
-        Ok(columns.collect::<Result<Vec<_>>>()?.concat())
+        })?;
+        Ok(columns.concat())
     }
 
     /// The looks at one length, each from the one before, until one is known.

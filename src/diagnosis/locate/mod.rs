@@ -17,14 +17,13 @@ mod open;
 mod process;
 mod tangent;
 
-use rayon::prelude::*;
-
 use crate::diagnosis::evidence::fit::{Fit, likeliest};
 use crate::draws::Draws;
 use crate::error::Result;
-use crate::infer::nested::{Effort, Learned, integrated, learn};
+use crate::infer::nested::{Effort, integrated, learn};
 use crate::mechanism::{Extent, Mechanism};
 use crate::model::{AnyProgram, Posterior, Program, With};
+use crate::parallel;
 use crate::physics::forces::Axis;
 use crate::seed::Seed;
 
@@ -71,10 +70,7 @@ pub(crate) fn free_fit(
     let lines: Vec<Vec<f64>> = lines
         .map(|(force, own)| Ok([free.waves(force)?, own.clone()].concat()))
         .collect::<Result<_>>()?;
-    let rows = lines
-        .par_iter()
-        .map(|line| posterior.natural(line))
-        .collect::<Result<Vec<_>>>()?;
+    let rows = parallel::try_map(&lines, |line| posterior.natural(line))?;
     let mut draws = empty(&posterior)?;
     draws.push_chain(rows.concat(), None)?;
     let fit = Fit {
@@ -189,35 +185,28 @@ pub(crate) fn locate_all(
     let posteriors = with.iter().map(|with| Posterior::new(with));
     let posteriors = posteriors.collect::<Result<Vec<_>>>()?;
     let shared = program.events() > 1;
-    let learned = posteriors
-        .par_iter()
-        .enumerate()
-        .map(|(i, posterior)| {
+    let learned =
+        parallel::try_map((0..).zip(&posteriors), |(i, posterior)| {
             let sought = Sought::of(posterior, extent, CELLS);
             let looks = sought.looks(none.own(), FINE)?;
             let mixture = proposal(&looks)?;
             let marginal = Marginal::new(sought, looks, shared);
-            let seed = seed.child(i as u64).child(0);
+            let seed = seed.child(i).child(0);
             let learned = learn(&marginal, mixture, EFFORT, seed)?;
             Ok((marginal, learned))
-        })
-        .collect::<Result<Vec<(Marginal<'_, '_>, Learned)>>>()?;
+        })?;
     let logs = learned.iter().map(|(_, learned)| learned.log);
     let best = logs.fold(f64::NEG_INFINITY, f64::max);
-    learned
-        .par_iter()
-        .zip(axes)
-        .enumerate()
-        .map(|(i, ((marginal, learned), axis))| {
-            let far = learned.log < best - FAR;
-            let effort = if far { FEW } else { EFFORT };
-            let seed = seed.child(i as u64);
-            let found = integrated(marginal, learned, effort, seed.child(1))?;
-            let looks = marginal.looks.clone();
-            let seed = seed.child(2);
-            Ok(FreeForce::new(extent, *axis, none, &found, looks, seed))
-        })
-        .collect()
+    let each = (0..).zip(&learned).zip(axes);
+    parallel::try_map(each, |((i, (marginal, learned)), axis)| {
+        let far = learned.log < best - FAR;
+        let effort = if far { FEW } else { EFFORT };
+        let seed = seed.child(i);
+        let found = integrated(marginal, learned, effort, seed.child(1))?;
+        let looks = marginal.looks.clone();
+        let seed = seed.child(2);
+        Ok(FreeForce::new(extent, *axis, none, &found, looks, seed))
+    })
 }
 
 #[cfg(test)]

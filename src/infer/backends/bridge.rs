@@ -9,8 +9,6 @@
 //! of Fruehwirth-Schnatter (2004). h stays bounded wherever p or q does, so
 //! that neither's tails can spoil it as they do importance sampling.
 
-use rayon::prelude::*;
-
 use crate::draws::{Draws, ess_mean, median, rhat};
 use crate::error::{Error, Result};
 use crate::infer::proposal::Mixture;
@@ -19,6 +17,7 @@ use crate::infer::{
     Backend, Effort, Evidence, Inference, MetropolisHastings, Progress, Smc,
 };
 use crate::model::Posterior;
+use crate::parallel;
 use crate::seed::Seed;
 
 /// Bridge sampling on the draws of another backend.
@@ -161,9 +160,9 @@ fn placed(
     base: &Base,
     rows: &[&[f64]],
 ) -> Result<Vec<Particle>> {
-    rows.par_iter()
-        .map(|row| base.particle(posterior, posterior.line(row)?))
-        .collect()
+    parallel::try_map(rows, |row| {
+        base.particle(posterior, posterior.line(row)?)
+    })
 }
 
 /// ln p - ln q.

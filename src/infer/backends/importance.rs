@@ -8,8 +8,6 @@
 //! 2024). What q hardly ever reaches its own draws do not tell; those of the
 //! pilot do, at which the weights are looked at too.
 
-use rayon::prelude::*;
-
 use super::smc::Smc;
 use crate::draws::Draws;
 use crate::error::Result;
@@ -19,6 +17,7 @@ use crate::infer::proposal::{Base, Particle, log_target, population};
 use crate::infer::weights::{cut, log_mean_weight};
 use crate::infer::{Backend, Effort, Inference, Progress, draws_of};
 use crate::model::{Density, Point, Posterior};
+use crate::parallel;
 use crate::seed::Seed;
 
 /// Importance sampling by a Student-t mixture.
@@ -98,10 +97,8 @@ impl ImportanceSampling {
             .map(|row| posterior.line(row))
             .collect::<Result<_>>()?;
         progress.begin("importance sampling", None);
-        let densities: Vec<Density> = given
-            .par_iter()
-            .map(|z| posterior.density(Point::Line(z)))
-            .collect::<Result<_>>()?;
+        let densities: Vec<Density> =
+            parallel::try_map(&given, |z| posterior.density(Point::Line(z)))?;
         let mut base = self.fitted(posterior, &given, seed, progress)?;
         let mut whole = true;
         if let Base::Mixture(mixture) = base {

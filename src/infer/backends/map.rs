@@ -11,13 +11,13 @@ use argmin::core::{CostFunction, Executor, Gradient, State};
 use argmin::solver::linesearch::MoreThuenteLineSearch;
 use argmin::solver::quasinewton::LBFGS;
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::infer::simplex::{WALL, descend};
 use crate::infer::start::apart;
 use crate::infer::{Backend, Inference, Mode, Progress};
 use crate::model::{Point, Posterior, Weights};
+use crate::parallel;
 use crate::seed::Seed;
 
 /// The search for the mode.
@@ -213,15 +213,12 @@ impl Backend for Map {
         let mut starts = self.from.clone();
         starts.extend(apart(posterior, self.starts, seed)?);
         progress.begin("climbing", Some(starts.len() as u64));
-        let mut ends = starts
-            .par_iter()
-            .map(|start| {
-                let start = DVector::from_vec(posterior.line(start)?);
-                let end = climb(posterior, start, &ROUGH);
-                progress.advance(1);
-                end
-            })
-            .collect::<Result<Vec<_>>>()?;
+        let mut ends = parallel::try_map(&starts, |start| {
+            let start = DVector::from_vec(posterior.line(start)?);
+            let end = climb(posterior, start, &ROUGH);
+            progress.advance(1);
+            end
+        })?;
         ends.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut reached: Vec<f64> = ends.iter().map(|end| end.0).collect();
         let Some((_, highest)) = ends.into_iter().next() else {

@@ -9,12 +9,12 @@
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
-use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::infer::start::apart;
 use crate::infer::{Backend, Effort, Inference, Progress, draws_of};
 use crate::model::{Point, Posterior};
+use crate::parallel;
 use crate::seed::{Rng, Seed};
 
 /// How the next place is proposed.
@@ -333,11 +333,10 @@ impl Backend for MetropolisHastings {
         progress.begin("sampling", Some(steps as u64));
         // A path of its own, beside those of the chains.
         let starts = self.places(posterior, seed.child(self.chains as u64))?;
-        let chains: Vec<_> = starts
-            .into_par_iter()
-            .enumerate()
-            .map(|start| self.chain(posterior, start, seed, progress))
-            .collect::<Result<_>>()?;
+        let chains =
+            parallel::try_map(starts.into_iter().enumerate(), |from| {
+                self.chain(posterior, from, seed, progress)
+            })?;
         let mut draws = draws_of(posterior)?;
         let mut hints = Vec::new();
         for (index, (rows, acceptance)) in chains.into_iter().enumerate() {

@@ -19,13 +19,13 @@ use nuts_rs::{
     Chain, CpuLogpFunc, CpuMath, CpuMathError, HasDims, LogpError,
     LowRankNutsSettings, NutsError, Settings, WalnutsOptions,
 };
-use rayon::prelude::*;
 
 use super::mh::to_natural;
 use crate::error::{Error, Result};
 use crate::infer::start::{apart, best_start};
 use crate::infer::{Backend, Effort, Inference, Progress, draws_of};
 use crate::model::{Posterior, Weights};
+use crate::parallel;
 use crate::seed::{Rng, Seed};
 
 /// Several independent chains of the no-U-turn sampler.
@@ -383,13 +383,10 @@ impl Backend for Nuts {
         progress.begin("sampling", Some(steps as u64));
         // A path of its own, beside those of the chains.
         let beside = seed.child(self.chains as u64);
-        let chains: Vec<_> = apart(posterior, self.chains, beside)?
-            .into_par_iter()
-            .enumerate()
-            .map(|(i, from)| {
-                self.chain(posterior, from, seed.child(i as u64), progress)
-            })
-            .collect::<Result<_>>()?;
+        let starts = apart(posterior, self.chains, beside)?;
+        let chains = parallel::try_map((0..).zip(starts), |(i, from)| {
+            self.chain(posterior, from, seed.child(i), progress)
+        })?;
         let mut draws = draws_of(posterior)?;
         let mut courses = Vec::new();
         for (rows, course) in chains {

@@ -6,7 +6,6 @@
 //! of an inverse gamma distribution) is found by its form and integrated in
 //! closed form: ln of the integral is c + ln Gamma(alpha) - alpha ln B.
 
-use rayon::prelude::*;
 use statrs::function::gamma::{gamma_ur, ln_gamma};
 
 use super::legendre::{Cumulative, gauss_legendre};
@@ -18,6 +17,7 @@ use crate::infer::{
     log_sum_exp,
 };
 use crate::model::{Point, Posterior};
+use crate::parallel;
 use crate::seed::Seed;
 
 /// Quadrature on a tensor grid, for up to four parameters.
@@ -245,13 +245,9 @@ impl<'p, 'm> Grid<'p, 'm> {
     fn integrated(&self, nodes: usize) -> Result<Integrated> {
         let rule = gauss_legendre(nodes);
         let count = nodes.pow(self.axes.len() as u32);
-        let cells = (0..count)
-            .into_par_iter()
-            .map_init(
-                || self.base.clone(),
-                |z, index| self.cell(&rule, index, z),
-            )
-            .collect::<Result<Vec<_>>>()?;
+        let cells = parallel::try_map(0..count, |index| {
+            self.cell(&rule, index, &mut self.base.clone())
+        })?;
         let logs: Vec<f64> = cells.iter().map(|(log, _)| *log).collect();
         let rates = cells.iter().map(|(_, rate)| *rate).collect();
         let log = log_sum_exp(logs.iter().copied());

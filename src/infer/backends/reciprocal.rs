@@ -10,7 +10,6 @@
 use std::f64::consts::PI;
 
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 use statrs::function::erf::erfc;
 
 use crate::draws::{Draws, ess_mean, psis};
@@ -19,6 +18,7 @@ use crate::infer::{
     Backend, Effort, Evidence, Inference, MetropolisHastings, Progress,
 };
 use crate::model::{Point, Posterior};
+use crate::parallel;
 use crate::seed::Seed;
 
 /// The paper's estimator, on the paper's random walk.
@@ -117,10 +117,9 @@ fn log_ratios(
     };
     (0..draws.chains())
         .map(|c| {
-            (middle..draws.iterations())
-                .into_par_iter()
-                .map(|i| ratio(draws.row(c, i)))
-                .collect()
+            parallel::try_map(middle..draws.iterations(), |i| {
+                ratio(draws.row(c, i))
+            })
         })
         .collect()
 }

@@ -16,7 +16,6 @@ use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
 use rand::seq::SliceRandom;
 use rand_distr::{Distribution, StandardNormal};
-use rayon::prelude::*;
 
 use super::memory::Memory;
 use crate::draws::Draws;
@@ -26,6 +25,7 @@ use crate::infer::proposal::{Base, Particle, population};
 use crate::infer::weights::{effective, normalised, systematic};
 use crate::infer::{Backend, Effort, Evidence, Inference, Progress, draws_of};
 use crate::model::Posterior;
+use crate::parallel;
 use crate::seed::{Rng, Seed};
 
 /// Tempered sequential Monte Carlo.
@@ -300,16 +300,11 @@ impl<'p, 'm> Passage<'p, 'm> {
                 temperature: self.temperature,
             };
             let seed = seed.child(turn);
-            accepted += moving
-                .par_iter_mut()
-                .enumerate()
-                .map(|(i, particle)| {
-                    mover.step(particle, &mut seed.child(i as u64).rng())
-                })
-                .collect::<Result<Vec<bool>>>()?
-                .into_iter()
-                .filter(|a| *a)
-                .count();
+            let taken = parallel::try_map(
+                (0..).zip(moving.iter_mut()),
+                |(i, particle)| mover.step(particle, &mut seed.child(i).rng()),
+            )?;
+            accepted += taken.into_iter().filter(|a| *a).count();
         }
         Ok(accepted as f64 / self.particles.len() as f64)
     }
@@ -514,12 +509,8 @@ fn conclude(
     seed: Seed,
 ) -> Result<Inference> {
     let (log, se) = passage.evidence();
-    let rows = passage
-        .drawn(seed)
-        .par_iter()
-        .map(|p| posterior.natural(&p.z))
-        .collect::<Result<Vec<_>>>()?
-        .concat();
+    let drawn = passage.drawn(seed);
+    let rows = parallel::try_map(drawn, |p| posterior.natural(&p.z))?.concat();
     let mut draws = draws_of(posterior)?;
     draws.push_chain(rows, None)?;
     let mut warnings = Vec::new();

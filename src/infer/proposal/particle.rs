@@ -1,12 +1,12 @@
 //! Draws from a proposal, each with its densities under proposal and posterior.
 
 use rand::RngExt;
-use rayon::prelude::*;
 
 use super::Mixture;
 use crate::error::Result;
 use crate::infer::log_sum_exp;
 use crate::model::{Density, Point, Posterior};
+use crate::parallel;
 use crate::seed::{Rng, Seed};
 
 /// The share of prior draws in the second passage's base.
@@ -133,8 +133,7 @@ pub(in crate::infer) fn population(
     count: usize,
     seed: Seed,
 ) -> Result<Vec<Particle>> {
-    (0..count)
-        .into_par_iter()
-        .map(|i| base.draw(posterior, &mut seed.child(i as u64).rng()))
-        .collect()
+    parallel::try_map(0..count as u64, |i| {
+        base.draw(posterior, &mut seed.child(i).rng())
+    })
 }

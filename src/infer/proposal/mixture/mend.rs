@@ -1,10 +1,10 @@
 //! Adding components to a mixture where it is far too low.
 
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 use super::{Component, INFLATION, Mixture, moments};
 use crate::infer::log_sum_exp;
+use crate::parallel;
 
 /// A ratio of densities above which a place may need a component of its own,
 /// how much such places may add to the relative variance of the weights before
@@ -34,8 +34,7 @@ impl Mixture {
         let points: Vec<DVector<f64>> =
             draws.iter().map(|z| DVector::from_column_slice(z)).collect();
         let (_, covariance) = moments(&points, weights)?;
-        let mut logs: Vec<f64> =
-            draws.par_iter().map(|z| self.log_density(z)).collect();
+        let mut logs: Vec<f64> = parallel::map(draws, |z| self.log_density(z));
         let mut mended = self.clone();
         for _ in 0..ADDED {
             let ratios: Vec<f64> =
@@ -93,10 +92,9 @@ fn patch(
     covariance: &DMatrix<f64>,
 ) -> Option<Component> {
     let whole = Component::new(1.0, place.clone(), covariance)?;
-    let mut near: Vec<(f64, usize)> = (0..points.len())
-        .into_par_iter()
-        .map(|i| (whole.distance(points[i].as_slice()), i))
-        .collect();
+    let mut near: Vec<(f64, usize)> = parallel::map(0..points.len(), |i| {
+        (whole.distance(points[i].as_slice()), i)
+    });
     near.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut mass = 0.0;
     let mut spread = DMatrix::zeros(place.len(), place.len());
