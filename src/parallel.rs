@@ -38,7 +38,9 @@ pub(crate) fn try_map<S: Send, T: Send>(
     let failed = AtomicBool::new(false);
     let done = map(items, |item| {
         let done = (!failed.load(Relaxed)).then(|| work(item))?;
-        failed.fetch_or(done.is_err(), Relaxed);
+        if done.is_err() {
+            failed.store(true, Relaxed);
+        }
         Some(done)
     });
     done.into_iter().flatten().collect()

@@ -73,6 +73,9 @@ fn moments(of: impl Fn(f64, f64) -> f64) -> (f64, f64) {
     (mean, grid.iter().map(square).sum::<f64>().sqrt())
 }
 
+/// The population of [`SEEN`], which two tests look at.
+static POOLED: LazyLock<Population> = LazyLock::new(|| pooled(&SEEN, 4000));
+
 fn pooled(seen: &[f64], draws: usize) -> Population {
     pool(&members(seen, draws), Seed::new(3), &Quiet).unwrap()
 }
@@ -82,7 +85,7 @@ fn pooled(seen: &[f64], draws: usize) -> Population {
 /// together is 0.17.
 #[test]
 fn mean_and_spread_are_those_of_the_grid() {
-    let found = pooled(&SEEN, 4000);
+    let found = &*POOLED;
     assert!(found.warnings.is_empty(), "{:?}", found.warnings);
     let summaries = couloir::draws::summarise(&found.draws);
     let exact = [moments(|m, _| m), moments(|_, s| s)];
@@ -111,7 +114,7 @@ fn below(seen: f64, x: f64) -> f64 {
 /// times both.
 #[test]
 fn members_are_where_the_grid_has_them() {
-    let found = pooled(&SEEN, 4000);
+    let found = &*POOLED;
     for (seen, member) in SEEN.iter().zip(&found.members) {
         let [low, half, high] = member.pooled[0];
         for (x, level, error) in
