@@ -85,11 +85,15 @@ impl Repeats {
     fn row(&self, label: &str) -> String {
         let (middle, stated) = (mean(&self.log_evidence), mean(&self.stated));
         let off = self.off();
-        let most = off.iter().map(|x| x.abs()).fold(0.0, f64::max);
+        let by_size =
+            |a: &usize, b: &usize| off[*a].abs().total_cmp(&off[*b].abs());
+        let most = (0..off.len()).max_by(by_size).unwrap_or_default();
+        let (seed, most) = (most + 1, off[most]);
         let square = off.iter().map(|x| x * x).sum::<f64>();
         let sd = (square / (off.len() as f64 - 1.0)).sqrt();
         format!(
-            "| {label} | {middle:.2} | {most:.2} | {sd:.3} | {stated:.3} |"
+            "| {label} | {middle:.2} | {most:+.2} | {seed} | {sd:.3} | \
+             {stated:.3} |"
         )
     }
 
@@ -125,8 +129,8 @@ fn study(name: &str, model: &Assembled, seeds: u64) -> Result<()> {
     let middle = |of: &Repeats| mean(&of.log_evidence);
     let best = repeats.iter().map(middle).fold(f64::NEG_INFINITY, f64::max);
     println!("\n{name}, {seconds:.2} s a seed");
-    println!("| candidate | ln evidence | most off | sd | stated |");
-    println!("|---|---|---|---|---|");
+    println!("| candidate | ln evidence | most off | by seed | sd | stated |");
+    println!("|---|---|---|---|---|---|");
     let mut scores = Vec::new();
     for (of, mechanism) in repeats.iter().zip(&all) {
         if middle(of) >= best - FAR {

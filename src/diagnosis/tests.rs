@@ -117,6 +117,24 @@ fn of_so_few_values_nothing_is_said() {
 }
 
 #[test]
+fn what_nothing_in_particular_explains_is_not_called_sure() {
+    let mut unsure = adequate();
+    unsure.mechanisms[0].probability = 0.3;
+    unsure.mechanisms[1].probability = 0.2;
+    let words = in_words(&unsure);
+    assert!(
+        words[0].starts_with("Nothing is sure to be missing"),
+        "{words:#?}"
+    );
+    let all: f64 = unsure.mechanisms[1..].iter().map(|m| m.probability).sum();
+    let together = format!("together of probability {all:.2}, the most");
+    assert!(words.join(" ").contains(&together), "{words:#?}");
+    unsure.verdict = Verdict::Errors;
+    let words = in_words(&unsure);
+    assert!(words[0].starts_with("No force is sure to be missing"));
+}
+
+#[test]
 fn noise_that_swallowed_the_physics_is_said() {
     let rich = &all()[6];
     let words = in_words(rich).join(" ");

@@ -3,14 +3,14 @@
 use std::f64::consts::LN_10;
 
 use crate::diagnosis::decide::chosen::Chosen;
-use crate::diagnosis::decide::judge::Beforehand;
+use crate::diagnosis::decide::judge::{Beforehand, verdict_of_family};
 use crate::diagnosis::decide::stepwise::{RISE, Stepwise};
 use crate::diagnosis::evidence::attribute::Attribution;
 use crate::diagnosis::evidence::noises::Noisy;
 use crate::diagnosis::findings::{Judged, Verdict};
 use crate::diagnosis::hypothesis::UNKNOWN;
 use crate::error::Result;
-use crate::mechanism::{Family, Mechanism};
+use crate::mechanism::Mechanism;
 use crate::seed::Seed;
 
 /// What there is to choose from.
@@ -52,7 +52,9 @@ impl Choice<'_> {
             return Ok(None);
         }
         let candidates = self.best_variants();
-        let Some(first) = self.first(&candidates) else { return Ok(None) };
+        let Some(first) = self.first(&candidates, verdict) else {
+            return Ok(None);
+        };
         if self.singly {
             let fit = self.found.candidates[first].clone();
             return Ok(Some(Chosen::new(vec![first], fit)));
@@ -72,9 +74,8 @@ impl Choice<'_> {
 
     /// The verdict once combinations are weighed too.
     ///
-    /// Where two or three mechanisms together were chosen, a single one is out
-    /// of the question, and what they say goes: physics where one of them is
-    /// of the physics, though the best single mechanism may be of the sensor.
+    /// What was chosen goes: physics where one of two or three mechanisms is of
+    /// the physics, though the best single one may be of the sensor.
     /// Where the free-form force is more probable than any single mechanism,
     /// it must bring more than several together by what any further term has
     /// to bring.
@@ -97,11 +98,8 @@ impl Choice<'_> {
             let equal = near.then_some(chosen);
             return Explained { verdict, chosen: None, equal };
         }
-        let verdict = match chosen.family(self.all) {
-            _ if single && !open => verdict,
-            Some(Family::Physics) => Verdict::MissingPhysics,
-            _ => Verdict::Measurement,
-        };
+        let family = chosen.family(self.all);
+        let verdict = family.map_or(verdict, verdict_of_family);
         Explained { verdict, chosen: Some(chosen), equal: None }
     }
 
@@ -118,14 +116,17 @@ impl Choice<'_> {
     }
 
     /// Of those that do nearly as well as the best under this noise the most
-    /// probable whatever the noise, so that what is selected is what is told.
-    fn first(&self, candidates: &[usize]) -> Option<usize> {
+    /// probable whatever the noise, so that what is selected is what is told,
+    /// and of what the verdict says where one of them is.
+    fn first(&self, candidates: &[usize], verdict: Verdict) -> Option<usize> {
         let log = |i: usize| self.found.candidates[i].log_evidence;
         let best = *candidates.first()?;
         let near = |i: &usize| log(best) - log(*i) < RISE * LN_10;
         let rank = |i: &usize| {
-            let name = self.all[*i].name();
-            self.judged.iter().position(|m| m.name == name)
+            let mechanism = self.all[*i].as_ref();
+            let agrees = verdict_of_family(mechanism.family()) == verdict;
+            let name = mechanism.name();
+            (!agrees, self.judged.iter().position(|m| m.name == name))
         };
         candidates.iter().copied().filter(near).min_by_key(rank)
     }

@@ -326,21 +326,27 @@ fn verdict_of(kind: Hypothesis) -> Verdict {
     match kind {
         Hypothesis::Baseline => Verdict::Adequate,
         Hypothesis::Unknown => Verdict::Unexplained,
-        Hypothesis::Mechanism(family) => match family {
-            Family::Physics => Verdict::MissingPhysics,
-            Family::Start | Family::Measurement => Verdict::Measurement,
-        },
+        Hypothesis::Mechanism(family) => verdict_of_family(family),
     }
 }
 
-/// The verdict with the largest summed probability.
+/// The verdict that a mechanism of a family stands for.
+pub(crate) fn verdict_of_family(family: Family) -> Verdict {
+    match family {
+        Family::Physics => Verdict::MissingPhysics,
+        Family::Start | Family::Measurement => Verdict::Measurement,
+    }
+}
+
+/// The verdict on everything that was weighed, most probable first: nothing is
+/// missing where the model as it is comes first, and otherwise what the kind
+/// with the largest summed probability stands for.
 pub(crate) fn verdict(all: &[Judged]) -> Verdict {
-    let verdicts = [
-        Verdict::Adequate,
-        Verdict::MissingPhysics,
-        Verdict::Measurement,
-        Verdict::Unexplained,
-    ];
+    if all.first().is_none_or(|m| m.kind == Hypothesis::Baseline) {
+        return Verdict::Adequate;
+    }
+    let verdicts =
+        [Verdict::MissingPhysics, Verdict::Measurement, Verdict::Unexplained];
     let mass = |verdict: &Verdict| -> f64 {
         let of = all.iter().filter(|m| verdict_of(m.kind) == *verdict);
         of.map(|m| m.probability).sum()
@@ -439,6 +445,30 @@ mod tests {
             let two = next(verdict, &["surge", "cohesion"]).unwrap();
             assert!(two.contains("tell them apart"), "{two}");
         }
+    }
+
+    #[test]
+    fn the_model_as_it_is_has_to_be_beaten_by_a_single_hypothesis() {
+        let physics = Hypothesis::Mechanism(Family::Physics);
+        let sensor = Hypothesis::Mechanism(Family::Measurement);
+        let start = Hypothesis::Mechanism(Family::Start);
+        let of =
+            |all: &[(Hypothesis, f64)]| {
+                let judged = |&(kind, probability): &(Hypothesis, f64)| {
+                    Judged { kind, probability, ..Judged::default() }
+                };
+                verdict(&all.iter().map(judged).collect::<Vec<_>>())
+            };
+        let baseline = Hypothesis::Baseline;
+        let all = [(baseline, 0.3), (physics, 0.28), (physics, 0.26)];
+        assert_eq!(of(&all), Verdict::Adequate);
+        let all = [(physics, 0.3), (baseline, 0.28), (sensor, 0.1)];
+        assert_eq!(of(&all), Verdict::MissingPhysics);
+        // The start counts with the measurement.
+        let all = [(physics, 0.3), (sensor, 0.2), (start, 0.2)];
+        assert_eq!(of(&all), Verdict::Measurement);
+        let all = [(Hypothesis::Unknown, 0.5), (physics, 0.3)];
+        assert_eq!(of(&all), Verdict::Unexplained);
     }
 
     #[test]

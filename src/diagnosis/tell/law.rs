@@ -3,7 +3,7 @@
 
 use crate::diagnosis::hypothesis::UNKNOWN;
 use crate::diagnosis::tell::phrases::{
-    interval, is_corrected, joined, with_unit,
+    interval, is_corrected, is_unsure, joined, with_unit,
 };
 use crate::diagnosis::{Diagnosis, ParameterSummary, Verdict};
 use crate::report::digits::beside;
@@ -86,12 +86,14 @@ fn values(all: &[ParameterSummary], named: bool) -> String {
 fn doubt(d: &Diagnosis) -> Option<&'static str> {
     // Several terms then imitate a force that none of them is.
     let imitates = d.group.first().is_some_and(|name| name == UNKNOWN);
-    match (d.weak, imitates && is_corrected(d)) {
-        (true, _) => Some("the verdict is weak"),
-        (false, true) => {
-            Some("no mechanism alone explains as much as that force")
-        }
-        (false, false) => None,
+    if d.weak {
+        Some("the verdict is weak")
+    } else if imitates && is_corrected(d) {
+        Some("no mechanism alone explains as much as that force")
+    } else if is_unsure(d) {
+        Some("more likely than not something is missing")
+    } else {
+        None
     }
 }
 
@@ -107,7 +109,7 @@ fn agree(told: &[ParameterSummary], open: &[ParameterSummary]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::LawParameters;
+    use crate::diagnosis::{Hypothesis, Judged, LawParameters};
 
     fn mu(q05: f64, q50: f64, q95: f64) -> Vec<ParameterSummary> {
         let (name, unit) = ("mu".to_owned(), "1".to_owned());
@@ -158,6 +160,18 @@ mod tests {
         assert!(alone.ends_with("use the value with the force."), "{alone}");
         let open = told(Verdict::Unexplained, Some(0.3));
         assert!(open.starts_with("With a force of free form"), "{open}");
+        let baseline = |probability| Judged {
+            kind: Hypothesis::Baseline,
+            probability,
+            ..Judged::default()
+        };
+        for (probability, which) in [(0.6, "calibrated"), (0.4, "with the")] {
+            let mut near = diagnosis(Verdict::Adequate, None);
+            near.law.as_it_was = mu(0.29, 0.31, 0.33);
+            near.mechanisms = vec![baseline(probability)];
+            let near = law(&near).unwrap();
+            assert!(near.contains("agrees") && near.contains(which), "{near}");
+        }
         let nothing = Diagnosis::default();
         assert!(law(&nothing).is_none());
     }

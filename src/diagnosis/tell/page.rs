@@ -4,8 +4,8 @@
 use maud::{Markup, html};
 
 use crate::diagnosis::tell::phrases::{
-    called, capital, friction, interval, is_corrected, noise_row, probability,
-    with_unit,
+    called, capital, friction, interval, is_corrected, is_unsure, noise_row,
+    probability, with_unit,
 };
 use crate::diagnosis::tell::pictures::{
     Figure, bars, forces, left_over, of_event,
@@ -120,6 +120,7 @@ fn force_title(verdict: Verdict) -> &'static str {
 fn headline(d: &Diagnosis) -> &'static str {
     match d.verdict {
         Verdict::Adequate if d.too_few().is_some() => "Too few values to tell",
+        Verdict::Adequate if is_unsure(d) => "Nothing is sure to be missing",
         Verdict::Adequate => "Nothing is missing",
         Verdict::MissingPhysics => "Physics is missing",
         Verdict::Measurement => "The start or the measurement is off",

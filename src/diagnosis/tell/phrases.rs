@@ -1,8 +1,8 @@
 //! Mechanisms, places and figures in words.
 
 use crate::diagnosis::{
-    Baseline, Diagnosis, Judged, JudgedNoise, Mismatch, ParameterSummary,
-    Verdict,
+    Baseline, Diagnosis, Hypothesis, Judged, JudgedNoise, Mismatch,
+    ParameterSummary, Verdict,
 };
 use crate::physics::forces::Axis;
 use crate::report::NoiseRow;
@@ -14,6 +14,19 @@ use crate::report::text::{is_synthetic, plain, unit};
 pub(crate) fn is_corrected(d: &Diagnosis) -> bool {
     let errors = d.verdict == Verdict::Errors && d.withheld.is_none();
     errors || !d.selected.is_empty()
+}
+
+/// The probability that nothing is missing, where it was weighed.
+pub(crate) fn of_baseline(d: &Diagnosis) -> Option<f64> {
+    let baseline = |m: &&Judged| m.kind == Hypothesis::Baseline;
+    d.mechanisms.iter().find(baseline).map(|m| m.probability)
+}
+
+/// Whether nothing in particular explains a recording better than the model
+/// does, although it is more likely that something is missing than nothing.
+pub(crate) fn is_unsure(d: &Diagnosis) -> bool {
+    matches!(d.verdict, Verdict::Adequate | Verdict::Errors)
+        && of_baseline(d).is_some_and(|p| p < 0.5)
 }
 
 /// A mechanism as a snow scientist would call it.

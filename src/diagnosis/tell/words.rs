@@ -5,8 +5,8 @@ use crate::diagnosis::tell::moment::place_or_moment;
 use crate::diagnosis::tell::noise::{is_other, noise};
 use crate::diagnosis::tell::phrases::{
     all_called, amounts, called, capital, event, friction, interval,
-    is_corrected, joined, judged, log10, model, own_name, probability, range,
-    recorded_in, stretch, with_unit,
+    is_corrected, is_unsure, joined, judged, log10, model, of_baseline,
+    own_name, probability, range, recorded_in, stretch, with_unit,
 };
 use crate::diagnosis::tell::signs::either_sign;
 use crate::diagnosis::tell::weak::{disagreement, withheld};
@@ -98,7 +98,8 @@ fn verdict(d: &Diagnosis) -> String {
             if d.withheld.is_some() { "may not be" } else { "is not" }
         ),
         Verdict::Errors => format!(
-            "No force is missing from {}: the errors of {event} {} {} ones.",
+            "No force is {}missing from {}: the errors of {event} {} {} ones.",
+            surely(d),
             friction(&d.baseline),
             if d.withheld.is_some() { "may not be" } else { "are not" },
             plain(&d.baseline.noise)
@@ -117,14 +118,19 @@ fn adequate(d: &Diagnosis, model: &str, event: &str) -> String {
              has {few}."
         );
     }
-    let sure = d.mechanisms.iter().find(|m| m.kind == Hypothesis::Baseline);
-    let sure = sure.map_or(String::new(), |m| {
-        format!(" (probability {})", probability(m.probability))
+    let sure = of_baseline(d).map_or(String::new(), |p| {
+        format!(" (probability {})", probability(p))
     });
     format!(
-        "Nothing is missing: {model} explains {event} as well as anything in \
-         the catalogue{sure}."
+        "Nothing is {}missing: {model} explains {event} as well as anything \
+         in the catalogue{sure}.",
+        surely(d)
     )
+}
+
+/// A word where nothing in particular is missing, but perhaps something is.
+fn surely(d: &Diagnosis) -> &'static str {
+    if is_unsure(d) { "sure to be " } else { "" }
 }
 
 /// Whether it is the start rather than the measurement that is off.
@@ -507,9 +513,14 @@ fn nearest(d: &Diagnosis) -> Option<String> {
     let others =
         || d.mechanisms.iter().filter(|m| m.kind != Hypothesis::Baseline);
     let m = others().next()?;
+    let all = others().map(|m| m.probability).sum();
+    let together = match is_unsure(d) {
+        true => format!(" together of probability {},", probability(all)),
+        false => String::new(),
+    };
     Some(format!(
-        "Of {} things that could be missing, the most probable is {} \
-         (probability {}, log10 Bayes factor {}).",
+        "Of {} things that could be missing,{together} the most probable is \
+         {} (probability {}, log10 Bayes factor {}).",
         others().count(),
         called(m),
         probability(m.probability),
