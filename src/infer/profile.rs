@@ -39,8 +39,8 @@ pub(super) struct Met {
     pub(super) higher: Option<Peak>,
 }
 
-/// What profiles from some peaks meet, both ways along every coordinate,
-/// except those left out; `best` is the height of the highest peak.
+/// What profiles from some peaks meet, both ways along some coordinates;
+/// `best` is the height of the highest peak.
 ///
 /// # Errors
 /// What no other parameter values would mend.
@@ -48,10 +48,10 @@ pub(super) fn profiles<'p>(
     posterior: &Posterior<'_>,
     peaks: impl Iterator<Item = &'p Peak>,
     best: f64,
-    left_out: &[usize],
+    along: impl Fn(usize) -> bool,
 ) -> Result<Met> {
     let all = peaks.flat_map(Profile::all);
-    let all = all.filter(|profile| !left_out.contains(&profile.along));
+    let all = all.filter(|profile| along(profile.along));
     let met = parallel::try_map(all, |profile| profile.walked(posterior))?;
     let mut all = Met::default();
     for one in met {

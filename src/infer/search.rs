@@ -243,32 +243,46 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
     }
 
     /// Profiles from the highest peaks; where these lead higher, from there.
+    /// Along what was surveyed they are asked for no more than that.
     ///
     /// A density that bends where recorded times pass the borders of pieces
     /// stops a climb short, and strides along a coordinate pass over that.
     fn profile(&mut self) -> Result<Vec<Component>> {
         let held = self.surveyed();
-        let mut met = self.profiled(0..1, &held)?;
-        for _ in 0..HIGHER {
-            let Some(higher) = met.higher.take() else { break };
-            self.climb(higher.line.as_slice())?;
-            met = self.profiled(0..1, &held)?;
-        }
-        let mut all = met.components;
+        self.rise(|along| held.contains(&along))?;
+        let free = |along: usize| !held.contains(&along);
+        let mut all = self.rise(free)?.components;
         if held.is_empty() {
             let others = 1..self.schedule.profiled;
-            all.extend(self.profiled(others, &held)?.components);
+            all.extend(self.profiled(others, free)?.components);
         }
         Ok(all)
     }
 
-    /// What profiles from some of the highest peaks meet.
-    fn profiled(&self, which: Range<usize>, held: &[usize]) -> Result<Met> {
+    /// What profiles along some coordinates meet, from the highest peak that
+    /// they lead to.
+    fn rise(&mut self, along: impl Fn(usize) -> bool) -> Result<Met> {
+        let mut met = self.profiled(0..1, &along)?;
+        for _ in 0..HIGHER {
+            let Some(higher) = met.higher.take() else { break };
+            self.climb(higher.line.as_slice())?;
+            met = self.profiled(0..1, &along)?;
+        }
+        Ok(met)
+    }
+
+    /// What profiles along some coordinates meet, from some of the highest
+    /// peaks.
+    fn profiled(
+        &self,
+        which: Range<usize>,
+        along: impl Fn(usize) -> bool,
+    ) -> Result<Met> {
         let best = self.peaks.first().map_or(0.0, |peak| peak.height);
         let least = best - self.schedule.profiled_below;
         let high = self.peaks.iter().filter(|peak| peak.height > least);
         let high = high.take(which.end).skip(which.start);
-        profiles(self.posterior, high, best, held)
+        profiles(self.posterior, high, best, along)
     }
 
     /// The coordinates along which places were looked at.
@@ -322,7 +336,7 @@ fn places_of(space: &SearchSpace) -> usize {
 }
 
 /// How often profiles may lead higher.
-const HIGHER: usize = 4;
+const HIGHER: usize = 8;
 
 /// Peaks nearer than this many widths, squared, are one.
 const ALIKE: f64 = 1.0;
