@@ -349,3 +349,49 @@ const AT_ONCE: usize = 24;
 /// next stride is twice as long, and above which half.
 const EVEN: f64 = 0.4;
 const STEEP: f64 = 1.5;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Outcome;
+    use crate::infer::places::HeldPlace;
+    use crate::model::{Label, Number, Program, Run};
+    use crate::prior::{AnyPrior, Normal};
+    use crate::scalar::Real;
+
+    /// 1 was seen of N(x^2, 0.45), with x ~ N(1, 0.8): a hill near 1, and one
+    /// near -1 that is 3 lower in ln, with a saddle of a twelfth between them.
+    struct Hills;
+
+    impl Program for Hills {
+        fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
+            let prior = AnyPrior::Normal(1.0, 0.8);
+            let x = run.scalar(Label::new("x", "1"), prior)?;
+            run.observe_each(&1.0, Normal::new(x * x, Real::new(0.45)))?;
+            run.scalar(Label::new("y", "1"), AnyPrior::Normal(0.0, 1.0))?;
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_survey_that_ends_short_is_led_on_by_a_profile() {
+        let posterior = Posterior::new(&Hills).unwrap();
+        let line = vec![-0.9, 0.0];
+        let place = HeldPlace { line: line.clone(), spacing: vec![0.05] };
+        let space = SearchSpace {
+            starts: vec![line],
+            grids: vec![HeldGrid { held: vec![0], places: vec![place] }],
+            ..SearchSpace::default()
+        };
+        let schedule = Schedule { surveyed: 1, ..Schedule::default() };
+        let mut search = Search::new(&posterior, &schedule);
+        search.climb_from_starts(&space, Seed::new(1)).unwrap();
+        search.look(&space).unwrap();
+        search.spread_out().unwrap();
+        assert!(search.peaks[0].line[0] < 0.0, "it begins on the lower hill");
+        let found = search.components().unwrap();
+        // Within a width of the higher hill, 0.45/2.
+        let best = found[0].mean[0];
+        assert!((best - 1.0).abs() < 0.225, "{best}");
+    }
+}
