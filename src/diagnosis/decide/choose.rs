@@ -116,8 +116,8 @@ impl Choice<'_> {
     }
 
     /// Of those that do nearly as well as the best under this noise the most
-    /// probable whatever the noise, so that what is selected is what is told,
-    /// and of what the verdict says where one of them is.
+    /// probable whatever the noise, so that what is selected is what is told;
+    /// those of the verdict's kind come before all others.
     fn first(&self, candidates: &[usize], verdict: Verdict) -> Option<usize> {
         let log = |i: usize| self.found.candidates[i].log_evidence;
         let best = *candidates.first()?;
