@@ -40,6 +40,11 @@ impl Frozen {
         Self { mixture, log, excess, good: false, round: 0 }
     }
 
+    /// The components of both, as if they had learned nothing yet.
+    pub(crate) fn beside(self, other: &Self) -> Self {
+        Self::new(self.mixture.beside(other.mixture.clone()))
+    }
+
     /// Goes on learning, for so many rounds in all, unless it is good before.
     ///
     /// # Errors

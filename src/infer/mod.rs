@@ -12,6 +12,8 @@ mod climb;
 mod convergence;
 mod display;
 mod estimate;
+#[cfg(test)]
+pub(crate) mod fixture;
 mod groups;
 mod inference;
 mod kept;

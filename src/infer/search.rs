@@ -353,25 +353,8 @@ const STEEP: f64 = 1.5;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::Outcome;
+    use crate::infer::fixture::Hills;
     use crate::infer::places::HeldPlace;
-    use crate::model::{Label, Number, Program, Run};
-    use crate::prior::{AnyPrior, Normal};
-    use crate::scalar::Real;
-
-    /// 1 was seen of N(x^2, 0.45), with x ~ N(1, 0.8): a hill near 1, and one
-    /// near -1 that is 3 lower in ln, with a saddle of a twelfth between them.
-    struct Hills;
-
-    impl Program for Hills {
-        fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
-            let prior = AnyPrior::Normal(1.0, 0.8);
-            let x = run.scalar(Label::new("x", "1"), prior)?;
-            run.observe_each(&1.0, Normal::new(x * x, Real::new(0.45)))?;
-            run.scalar(Label::new("y", "1"), AnyPrior::Normal(0.0, 1.0))?;
-            Ok(())
-        }
-    }
 
     #[test]
     fn a_survey_that_ends_short_is_led_on_by_a_profile() {

@@ -83,12 +83,12 @@ struct Look<'a> {
 impl Look<'_> {
     /// About what they are worth.
     fn promise(&self) -> f64 {
-        self.terms.log - self.price
+        self.terms.log() - self.price
     }
 
     /// The most that they may be worth.
     fn most(&self) -> f64 {
-        self.terms.most - self.price
+        self.terms.most() - self.price
     }
 }
 

@@ -3,8 +3,8 @@
 
 use super::fit::{Fit, Prospect, fit, prospect, spread};
 use super::grids::even_grids;
-use super::owns::Owns;
-use super::screen::{COARSE, FINE, Mesh, edge_grids};
+use super::owns::{Met, Owns};
+use super::screen::{COARSE, FINE, MET, Mesh, edge_grids};
 use crate::diagnosis::locate::{FreeForce, locate_all};
 use crate::draws::log_sum_exp;
 use crate::error::Result;
@@ -45,9 +45,9 @@ fn climbs(unknowns: usize) -> usize {
     }
 }
 
-/// How many climbs start from draws of the whole prior. All other starts have
-/// the model's own parameters at places that are likely without the mechanism,
-/// and with it they may be far off.
+/// How many climbs, for each mechanism, start from draws of the whole prior.
+/// All other starts have the model's own parameters at places that are likely
+/// without the mechanism, and with it they may be far off.
 pub(super) const PRIOR_STARTS: usize = 12;
 
 /// How far below the best, in ln, evidences still matter.
@@ -139,9 +139,6 @@ pub(crate) struct Known<'k> {
     pub(crate) care: Care,
 }
 
-/// Of how many unknowns mechanisms are looked at first.
-const FEW_UNKNOWNS: usize = 2;
-
 /// Mechanisms that are weighed one by one, in parallel.
 struct Weighing<'a> {
     program: &'a dyn AnyProgram,
@@ -172,49 +169,49 @@ impl Weighing<'_> {
         self.fitted(pursued, known)
     }
 
-    /// What a look finds of each. Those of few unknowns come first: where they
-    /// put the model's own parameters, others begin too. A brake from the start
-    /// on may stand for much of the friction, and no climb from where the model
-    /// has friction alone leads there.
+    /// What a look finds of each, and a second one from where others have the
+    /// model's own parameters. A brake from the start on may stand for much of
+    /// the friction, and no climb from where the model has friction alone
+    /// leads there.
     fn looked(
         &self,
         known: f64,
         mut owns: Owns,
         progress: &dyn Progress,
     ) -> Result<Vec<Prospect>> {
-        let few =
-            |i: &usize| self.catalogue[*i].unknowns().len() <= FEW_UNKNOWNS;
-        let (first, then): (Vec<_>, Vec<_>) =
-            (0..self.catalogue.len()).partition(few);
-        let mut found = self.looked_at(&first, &owns, progress)?;
-        let least = highest(&found, known) - self.care.relevant;
-        let near = found.iter().filter(|one| one.log() > least);
-        owns.meet(near.filter_map(|one| Some((one.log(), one.own()?))));
-        found.extend(self.looked_at(&then, &owns, progress)?);
-        let order = first.into_iter().chain(then);
-        let mut all: Vec<_> = order.zip(found).collect();
-        all.sort_by_key(|(i, _)| *i);
-        Ok(all.into_iter().map(|(_, prospect)| prospect).collect())
-    }
-
-    /// The same of some of them.
-    fn looked_at(
-        &self,
-        which: &[usize],
-        owns: &Owns,
-        progress: &dyn Progress,
-    ) -> Result<Vec<Prospect>> {
-        let look = |&i: &usize| {
-            let mechanism = self.catalogue[i].as_ref();
+        let looked = self.each(|i, mechanism| {
             let known = self.places.get(i).map_or(&[][..], Vec::as_slice);
             let (care, seed) = (self.care, self.seed_of(i));
             let found =
-                single(self.program, mechanism, (owns, known), care, seed)
-                    .map_err(|error| error.within(mechanism.name()));
+                single(self.program, mechanism, (&owns, known), care, seed);
             progress.advance(1);
             found
-        };
-        parallel::try_map(which, look)
+        })?;
+        let least = highest(&looked, known) - self.care.relevant;
+        let all = self.catalogue.iter().zip(&looked);
+        let near = all.filter(|(_, one)| one.log() > least);
+        owns.meet(near.filter_map(|(mechanism, one)| {
+            let (added, own) = one.place()?;
+            Some((one.log(), Met::of(mechanism.as_ref(), added, own)))
+        }));
+        if owns.met.is_empty() {
+            return Ok(looked);
+        }
+        self.each(|i, mechanism| {
+            let (first, seed) = (&looked[i], self.seed_of(i).child(4));
+            again(self.program, mechanism, first, &owns.met, seed)
+        })
+    }
+
+    /// What is found of each mechanism, in parallel.
+    fn each(
+        &self,
+        find: impl Fn(usize, &dyn Mechanism) -> Result<Prospect> + Sync,
+    ) -> Result<Vec<Prospect>> {
+        parallel::try_map(0..self.catalogue.len(), |i| {
+            let mechanism = self.catalogue[i].as_ref();
+            find(i, mechanism).map_err(|error| error.within(mechanism.name()))
+        })
     }
 
     /// The same after learning more, of those that may matter beside an
@@ -294,21 +291,43 @@ fn single(
         let beside = (&[][..], &own[..]);
         space.extend(around(&posterior, mechanism, None, beside, mesh, seed)?);
     }
-    for (which, owns) in [(2, &owns.between), (3, &owns.met)] {
-        for (i, own) in owns.iter().enumerate() {
-            let seed = seed.child(which).child(i as u64);
-            space.starts.extend(anywhere(mechanism, &[], own, seed));
-        }
+    for (i, own) in owns.between.iter().enumerate() {
+        let seed = seed.child(2).child(i as u64);
+        space.starts.extend(anywhere(mechanism, &[], own, seed));
     }
     let is_quick = care.is_quick || is_known;
-    let further = owns.tails.iter().chain(&owns.met);
-    for own in further.filter(|_| !is_quick) {
+    for own in owns.tails.iter().filter(|_| !is_quick) {
         let coarse = edge_grids(&posterior, mechanism, &[], own, COARSE)?;
         space.grids.extend(coarse);
     }
     let thorough = LaplaceMixture::within(space);
     let backend = if is_quick { thorough.quick() } else { thorough };
     prospect(program, &[mechanism], backend, seed.child(1))
+}
+
+/// Looks at a single mechanism once more, with the model's own parameters
+/// beginning where others have them: what both looks find together.
+fn again(
+    program: &dyn AnyProgram,
+    mechanism: &dyn Mechanism,
+    first: &Prospect,
+    met: &[Met],
+    seed: Seed,
+) -> Result<Prospect> {
+    let with = With::new(program, &[mechanism]);
+    let posterior = Posterior::new(&with)?;
+    let mut space = SearchSpace::default();
+    for (i, one) in met.iter().enumerate() {
+        let (own, seed) = (&one.own, seed.child(i as u64));
+        let anywhere = anywhere(mechanism, &[], own, seed);
+        space.starts.extend(one.shared_with(mechanism, &anywhere));
+        space.starts.extend(anywhere);
+        let grids = edge_grids(&posterior, mechanism, &[], own, MET)?;
+        space.grids.extend(grids);
+    }
+    let backend = LaplaceMixture::within(space).quick();
+    let second = prospect(program, &[mechanism], backend, seed.child(8))?;
+    first.clone().joined(second, &posterior, seed.child(9))
 }
 
 /// Where a mechanism is looked for, all other coordinates beginning at those

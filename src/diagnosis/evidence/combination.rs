@@ -25,15 +25,10 @@ pub(crate) struct Combination<'a> {
     mechanisms: Vec<&'a dyn Mechanism>,
     /// Where they are looked for.
     space: SearchSpace,
-    /// About ln of their evidence, and the most that it may be.
-    pub(crate) log: f64,
-    pub(crate) most: f64,
+    look: Prospect,
     seed: Seed,
 }
 
-/// From how many starts a quick look climbs: the best that is known, and one or
-/// two more of either mechanism.
-const STARTS: usize = 6;
 /// How far, in ln, what a search promises may fall short of an evidence.
 const SHORT: f64 = 1.0;
 
@@ -122,16 +117,24 @@ impl<'a> Combination<'a> {
         space: SearchSpace,
         seed: Seed,
     ) -> Result<Self> {
-        let mut few = space.clone();
-        few.starts.truncate(STARTS);
-        let space = SearchSpace { prior_starts: PRIOR_STARTS, ..space };
-        let quick = LaplaceMixture::within(few).quick();
-        let quick = prospect(program, &mechanisms, quick, seed.child(0))?;
-        let (log, most) = (quick.log(), quick.most());
-        Ok(Self { mechanisms, space, log, most, seed })
+        let prior_starts = PRIOR_STARTS * mechanisms.len();
+        let space = SearchSpace { prior_starts, ..space };
+        let quick = LaplaceMixture::within(space.clone()).quick();
+        let look = prospect(program, &mechanisms, quick, seed.child(0))?;
+        Ok(Self { mechanisms, space, look, seed })
     }
 
-    /// What a thorough search finds; `None` where they do not promise an
+    /// About ln of their evidence.
+    pub(crate) fn log(&self) -> f64 {
+        self.look.log()
+    }
+
+    /// The most that it may be.
+    pub(crate) fn most(&self) -> f64 {
+        self.look.most()
+    }
+
+    /// What the look and a thorough search find; `None` where they do not promise an
     /// evidence of about the hurdle.
     ///
     /// # Errors
@@ -142,14 +145,17 @@ impl<'a> Combination<'a> {
         hurdle: f64,
     ) -> Result<Option<Pursued<'a>>> {
         let least = hurdle - SHORT;
-        if self.most <= least {
+        if self.most() <= least {
             return Ok(None);
         }
         let (mechanisms, seed) = (&self.mechanisms[..], self.seed);
         let backend = LaplaceMixture::within(self.space.clone());
-        let looked = prospect(program, mechanisms, backend, seed.child(3))?;
+        let with = With::new(program, mechanisms);
+        let posterior = Posterior::new(&with)?;
+        let found = prospect(program, mechanisms, backend, seed.child(3))?;
+        let found = found.joined(self.look, &posterior, seed.child(4))?;
         let prospect =
-            looked.pursued(program, mechanisms, least, seed.child(2))?;
+            found.pursued(program, mechanisms, least, seed.child(2))?;
         if !prospect.may_reach(least) {
             return Ok(None);
         }

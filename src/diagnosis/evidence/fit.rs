@@ -44,7 +44,7 @@ impl Fit {
 }
 
 /// What a search found of a program with mechanisms, before it is estimated.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Prospect {
     backend: LaplaceMixture,
     /// A proposal for all coordinates; several events have each their own.
@@ -60,11 +60,11 @@ impl Prospect {
         self.log
     }
 
-    /// Where most of it has the model's own parameters, on the real line; not
-    /// of several events.
-    pub(crate) fn own(&self) -> Option<&[f64]> {
+    /// Where most of it is, on the real line: the mechanisms' parameters, and
+    /// the model's own; not of several events.
+    pub(crate) fn place(&self) -> Option<(&[f64], &[f64])> {
         let frozen = self.frozen.as_ref()?;
-        Some(&frozen.mixture.heaviest()?[self.added..])
+        Some(frozen.mixture.heaviest()?.split_at(self.added))
     }
 
     /// Whether what it holds may be above a threshold, in ln.
@@ -106,6 +106,30 @@ impl Prospect {
             let next = frozen.learned(&posterior, schedule, rounds, seed)?;
             self.log = next.log;
             self.frozen = Some(next);
+        }
+        Ok(self)
+    }
+
+    /// Together with what another search of the same posterior found, where
+    /// that is more.
+    ///
+    /// # Errors
+    /// A model that fails.
+    pub(crate) fn joined(
+        mut self,
+        other: Self,
+        posterior: &Posterior<'_>,
+        seed: Seed,
+    ) -> Result<Self> {
+        let (Some(first), Some(second)) = (&self.frozen, other.frozen) else {
+            return Ok(self);
+        };
+        if other.log > self.log {
+            let schedule = &self.backend.schedule;
+            let both = second.beside(first);
+            let both = both.learned(posterior, schedule, FEW_ROUNDS, seed)?;
+            self.log = both.log;
+            self.frozen = Some(both);
         }
         Ok(self)
     }
@@ -283,4 +307,50 @@ fn radical_inverse(mut i: u64, base: u64) -> f64 {
         digit /= base as f64;
     }
     value
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::infer::fixture::{Hills, proposal_for_hill};
+
+    /// ln of the evidence of the hills between two places, by the midpoint
+    /// rule.
+    fn between(low: f64, high: f64) -> f64 {
+        let normal = |x: f64, mean: f64, sd: f64| {
+            let z = (x - mean) / sd;
+            (-0.5 * z * z).exp() / (sd * std::f64::consts::TAU.sqrt())
+        };
+        let step = (high - low) / 4000.0;
+        let places = (0..4000).map(|i| low + (f64::from(i) + 0.5) * step);
+        let density = |x| normal(x, 1.0, 0.8) * normal(1.0, x * x, 0.45);
+        (places.map(density).sum::<f64>() * step).ln()
+    }
+
+    #[test]
+    fn two_searches_together_hold_what_either_found() {
+        let posterior = Posterior::new(&Hills).unwrap();
+        let near = |x: f64, seed| {
+            let backend = LaplaceMixture::default();
+            let (schedule, seed) = (&backend.schedule, Seed::new(seed));
+            let frozen = proposal_for_hill(x)
+                .learned(&posterior, schedule, FEW_ROUNDS, seed)
+                .unwrap();
+            let log = frozen.log;
+            Prospect { backend, frozen: Some(frozen), log, added: 0 }
+        };
+        let (low, high) = (near(-1.0, 1), near(1.0, 2));
+        // Two rounds of 600 draws, and an effective share above a third.
+        let error = 4.0 / 200.0_f64.sqrt();
+        assert!((low.log() - between(-3.0, 0.0)).abs() < error);
+        let joined = |a: &Prospect, b: &Prospect| {
+            let both = a.clone().joined(b.clone(), &posterior, Seed::new(3));
+            both.unwrap().log()
+        };
+        let found = joined(&low, &high);
+        let exact = between(-3.0, 4.0);
+        assert!((found - exact).abs() < error, "{found} for {exact}");
+        // What found less adds nothing.
+        assert_eq!(joined(&high, &low), high.log());
+    }
 }

@@ -5,7 +5,10 @@ use statrs::statistics::Statistics;
 use super::fit::Fit;
 use crate::diagnosis::locate::FreeForce;
 use crate::error::Result;
+use crate::mechanism::Mechanism;
 use crate::model::{AnyProgram, Posterior, With};
+use crate::prior::{AnyPrior, Prior};
+use crate::scalar::{Plain, Real};
 
 /// Where the model's own parameters begin.
 #[derive(Debug)]
@@ -20,14 +23,67 @@ pub(super) struct Owns {
     /// In the tails of each, with nothing added: the memory of the errors,
     /// above all, decides which stretches they hide.
     pub(super) tails: Vec<Vec<f64>>,
-    /// Where mechanisms of few unknowns have them.
-    pub(super) met: Vec<Vec<f64>>,
+    /// Where mechanisms have them.
+    pub(super) met: Vec<Met>,
     /// The standard deviation of each coordinate, with nothing added.
     widths: Vec<f64>,
 }
 
-/// How many places of the own parameters that mechanisms of few unknowns have
-/// are begun from, and from how many widths on these are places of their own.
+/// Where a mechanism is likely.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Met {
+    /// The model's own parameters there, on the line.
+    pub(super) own: Vec<f64>,
+    /// Names, units and values of the mechanism's unknowns.
+    values: Vec<(String, &'static str, f64)>,
+}
+
+impl Met {
+    /// Of a mechanism and a place on the line.
+    pub(super) fn of(
+        mechanism: &dyn Mechanism,
+        added: &[f64],
+        own: &[f64],
+    ) -> Self {
+        let values = mechanism.unknowns().into_iter().zip(added);
+        let values = values.map(|(unknown, z)| {
+            let support = <AnyPrior as Prior<Plain>>::support(&unknown.prior);
+            let (value, _) = support.from_line(Real::new(*z));
+            (unknown.name, unknown.unit, value.value())
+        });
+        Self { own: own.to_vec(), values: values.collect() }
+    }
+
+    /// Places of another mechanism with what both call alike as it is here: a
+    /// step is a patch that does not end, and where it begins a patch may.
+    pub(super) fn shared_with(
+        &self,
+        mechanism: &dyn Mechanism,
+        places: &[Vec<f64>],
+    ) -> Vec<Vec<f64>> {
+        let unknowns = mechanism.unknowns();
+        let shared = unknowns.iter().enumerate().filter_map(|(i, unknown)| {
+            let is_like = |(name, unit, _): &&(String, &str, f64)| {
+                *name == unknown.name && *unit == unknown.unit
+            };
+            let (.., value) = self.values.iter().find(is_like)?;
+            let support = <AnyPrior as Prior<Plain>>::support(&unknown.prior);
+            let z = support.to_line(*value);
+            z.is_finite().then_some((i, z))
+        });
+        let shared: Vec<(usize, f64)> = shared.collect();
+        let moved = |place: &Vec<f64>| {
+            let mut place = place.clone();
+            shared.iter().for_each(|&(i, z)| place[i] = z);
+            place
+        };
+        let count = if shared.is_empty() { 0 } else { places.len() };
+        places.iter().take(count).map(moved).collect()
+    }
+}
+
+/// How many places of the own parameters that mechanisms have are begun from,
+/// and from how many widths on these are places of their own.
 const MET: usize = 4;
 const ELSEWHERE: f64 = 2.0;
 
@@ -59,15 +115,12 @@ impl Owns {
 
     /// Takes in where mechanisms have them, each with ln of what it holds: the
     /// likeliest first, as far as these are places of their own.
-    pub(super) fn meet<'p>(
-        &mut self,
-        places: impl Iterator<Item = (f64, &'p [f64])>,
-    ) {
-        let mut places: Vec<(f64, &[f64])> = places.collect();
+    pub(super) fn meet(&mut self, places: impl Iterator<Item = (f64, Met)>) {
+        let mut places: Vec<(f64, Met)> = places.collect();
         places.sort_by(|a, b| b.0.total_cmp(&a.0));
-        for (_, own) in places {
-            if self.met.len() < MET && self.is_elsewhere(own) {
-                self.met.push(own.to_vec());
+        for (_, one) in places {
+            if self.met.len() < MET && self.is_elsewhere(&one.own) {
+                self.met.push(one);
             }
         }
     }
@@ -79,7 +132,8 @@ impl Owns {
             off.into_iter()
                 .any(|((a, b), width)| (a - b).abs() > ELSEWHERE * width)
         };
-        self.best.iter().chain(&self.met).all(is_far)
+        let met = self.met.iter().map(|one| &one.own);
+        self.best.iter().chain(met).all(is_far)
     }
 }
 
@@ -109,6 +163,8 @@ fn tails(mut drawn: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mechanism::Extent;
+    use crate::mechanism::catalogue::catalogue;
 
     #[test]
     fn places_of_their_own_are_taken_in_the_likeliest_first() {
@@ -125,9 +181,48 @@ mod tests {
         let far = (1..=5).map(|i| [10.0 * f64::from(i), 0.0]);
         let places: Vec<[f64; 2]> = places.into_iter().chain(far).collect();
         let logs = [9.0, 5.0, 6.0, 1.0, 2.0, 3.0, 4.0, 0.0];
-        owns.meet(logs.into_iter().zip(places.iter().map(|p| &p[..])));
+        let met = places
+            .iter()
+            .map(|place| Met { own: place.to_vec(), values: Vec::new() });
+        owns.meet(logs.into_iter().zip(met));
         let likeliest = [[0.5, 0.6], [40.0, 0.0], [30.0, 0.0], [20.0, 0.0]];
-        assert_eq!(owns.met, likeliest.map(|p| p.to_vec()));
+        let found: Vec<&[f64]> =
+            owns.met.iter().map(|one| &one.own[..]).collect();
+        assert_eq!(found, likeliest);
+    }
+
+    #[test]
+    fn a_patch_begins_where_a_step_does() {
+        let extent = Extent::EVERYTHING;
+        let blocks = ["voellmy".to_owned()];
+        let all = catalogue(&extent, &blocks);
+        let find = |name: &str| {
+            all.iter().map(AsRef::as_ref).find(|m| m.name() == name).unwrap()
+        };
+        let (step, patch) = (find("friction-step"), find("friction-patch"));
+        let met = Met::of(step, &[0.2, -1.5], &[7.0]);
+        let places = vec![vec![0.0, 0.0, 0.4, 1.0], vec![0.1, 0.2, 0.3, 2.0]];
+        let found = met.shared_with(patch, &places);
+        let natural = |m: &dyn Mechanism, i: usize, z: f64| {
+            let prior = &m.unknowns()[i].prior;
+            <AnyPrior as Prior<Plain>>::support(prior)
+                .from_line(Real::new(z))
+                .0
+                .value()
+        };
+        for (place, before) in found.iter().zip(&places) {
+            for (i, z) in [0.2, -1.5].into_iter().enumerate() {
+                let (of_step, of_patch) =
+                    (natural(step, i, z), natural(patch, i, place[i]));
+                // Round-off of a logistic function and back.
+                let off = (of_step - of_patch).abs();
+                assert!(off < 1e-9 * of_step.abs(), "{i}: {off}");
+            }
+            assert_eq!(place[2..], before[2..]);
+        }
+        // A shift of the release is called like nothing of a patch.
+        let release = Met::of(find("release-position"), &[0.1], &[7.0]);
+        assert!(release.shared_with(patch, &places).is_empty());
     }
 
     #[test]

@@ -54,6 +54,9 @@ pub(super) const FINE: Mesh =
 /// a second noise: beside a finer look, or from where a term is known.
 pub(super) const COARSE: Mesh =
     Mesh { borders: 60, levels: &[(7, 5), (1, 7)], halves: 0 };
+/// From where others have the model's own parameters: what they stand for may
+/// be friction from the start on.
+pub(super) const MET: Mesh = Mesh { halves: 4, ..COARSE };
 
 /// Places along the run where an edge of a confined mechanism may be, for each
 /// of its amplitudes; all other coordinates begin at `before` and `after`.
