@@ -330,27 +330,35 @@ mod tests {
     #[test]
     fn two_searches_together_hold_what_either_found() {
         let posterior = Posterior::new(&Hills).unwrap();
-        let near = |x: f64, seed| {
+        let near = |x: f64, log: f64| {
+            let frozen = Some(proposal_for_hill(x));
             let backend = LaplaceMixture::default();
-            let (schedule, seed) = (&backend.schedule, Seed::new(seed));
-            let frozen = proposal_for_hill(x)
-                .learned(&posterior, schedule, FEW_ROUNDS, seed)
-                .unwrap();
-            let log = frozen.log;
-            Prospect { backend, frozen: Some(frozen), log, added: 0 }
+            Prospect { backend, frozen, log, added: 0 }
         };
-        let (low, high) = (near(-1.0, 1), near(1.0, 2));
-        // Two rounds of 600 draws, and an effective share above a third.
-        let error = 4.0 / 200.0_f64.sqrt();
-        assert!((low.log() - between(-3.0, 0.0)).abs() < error);
+        let low = near(-1.0, between(-3.0, 0.0));
+        let high = near(1.0, between(0.0, 4.0));
         let joined = |a: &Prospect, b: &Prospect| {
-            let both = a.clone().joined(b.clone(), &posterior, Seed::new(3));
-            both.unwrap().log()
+            a.clone().joined(b.clone(), &posterior, Seed::new(3)).unwrap()
         };
-        let found = joined(&low, &high);
+        let at = |one: &Prospect, x: f64| {
+            let frozen = one.frozen.as_ref().unwrap();
+            frozen.mixture.log_density(&[x, 0.0])
+        };
+        let both = joined(&low, &high);
+        // 600 draws with an effective share above a third.
+        let error = 4.0 / 200.0_f64.sqrt();
         let exact = between(-3.0, 4.0);
-        assert!((found - exact).abs() < error, "{found} for {exact}");
+        assert!((both.log() - exact).abs() < error, "{}", both.log());
+        // Half of the weight at first, of which a round leaves half at least.
+        for (one, x) in [(&low, -1.0), (&high, 1.0)] {
+            assert!(at(&both, x) > at(one, x) + 0.125_f64.ln(), "{x}");
+        }
+        assert!(at(&high, -1.0) < at(&low, -1.0) + 0.125_f64.ln());
         // What found less adds nothing.
-        assert_eq!(joined(&high, &low), high.log());
+        let less = joined(&high, &low);
+        assert_eq!(
+            (less.log(), at(&less, -1.0)),
+            (high.log(), at(&high, -1.0))
+        );
     }
 }
