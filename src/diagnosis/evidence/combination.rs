@@ -25,6 +25,7 @@ pub(crate) struct Combination<'a> {
     mechanisms: Vec<&'a dyn Mechanism>,
     /// Where they are looked for.
     space: SearchSpace,
+    /// What a quick search found.
     look: Prospect,
     seed: Seed,
 }
@@ -134,8 +135,8 @@ impl<'a> Combination<'a> {
         self.look.most()
     }
 
-    /// What the look and a thorough search find; `None` where they do not promise an
-    /// evidence of about the hurdle.
+    /// What the look and a thorough search find; `None` where they do not
+    /// promise an evidence of about the hurdle.
     ///
     /// # Errors
     /// A model that fails.

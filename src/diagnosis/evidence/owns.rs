@@ -54,8 +54,9 @@ impl Met {
         Self { own: own.to_vec(), values: values.collect() }
     }
 
-    /// Places of another mechanism with what both call alike as it is here: a
-    /// step is a patch that does not end, and where it begins a patch may.
+    /// Places of another mechanism with what both call alike as it is here;
+    /// none where nothing is. A step is a patch that does not end, and where
+    /// it begins a patch may.
     pub(super) fn shared_with(
         &self,
         mechanism: &dyn Mechanism,
@@ -72,19 +73,20 @@ impl Met {
             z.is_finite().then_some((i, z))
         });
         let shared: Vec<(usize, f64)> = shared.collect();
-        let moved = |place: &Vec<f64>| {
-            let mut place = place.clone();
+        if shared.is_empty() {
+            return Vec::new();
+        }
+        let mut places = places.to_vec();
+        for place in &mut places {
             shared.iter().for_each(|&(i, z)| place[i] = z);
-            place
-        };
-        let count = if shared.is_empty() { 0 } else { places.len() };
-        places.iter().take(count).map(moved).collect()
+        }
+        places
     }
 }
 
 /// How many places of the own parameters that mechanisms have are begun from,
 /// and from how many widths on these are places of their own.
-const MET: usize = 4;
+const MOST_MET: usize = 4;
 const ELSEWHERE: f64 = 2.0;
 
 impl Owns {
@@ -119,7 +121,7 @@ impl Owns {
         let mut places: Vec<(f64, Met)> = places.collect();
         places.sort_by(|a, b| b.0.total_cmp(&a.0));
         for (_, one) in places {
-            if self.met.len() < MET && self.is_elsewhere(&one.own) {
+            if self.met.len() < MOST_MET && self.is_elsewhere(&one.own) {
                 self.met.push(one);
             }
         }
@@ -203,6 +205,7 @@ mod tests {
         let met = Met::of(step, &[0.2, -1.5], &[7.0]);
         let places = vec![vec![0.0, 0.0, 0.4, 1.0], vec![0.1, 0.2, 0.3, 2.0]];
         let found = met.shared_with(patch, &places);
+        assert_eq!(found.len(), places.len());
         let natural = |m: &dyn Mechanism, i: usize, z: f64| {
             let prior = &m.unknowns()[i].prior;
             <AnyPrior as Prior<Plain>>::support(prior)
