@@ -1,12 +1,13 @@
 //! The motion under a law with forces added to it, leg by leg.
 //!
 //! A leg ends where its piece does, where or when an added force changes, or
-//! at rest. On it the forces are of the exact family: a force that varies
-//! with the speed in another way is taken as linear in u^2 between the speeds
-//! at both ends (the secant), over steps so short that the error, of second
-//! order, is far below any noise.
+//! at rest. On it the forces are of the exact family. One that varies along
+//! the leg, or with the speed in another way than by u^2, is taken at the
+//! three stages of Kutta's method of third order: the mass moves in closed
+//! form under their mean, and the rest is added to it (`defect`).
 
 use super::ahead::Ahead;
+use super::defect::Defect;
 use super::exact::{End, Force, Pace};
 use super::forces::{Axis, Forces, Moment, NEAR, nearer};
 use super::friction::{Friction, Rate, Varies};
@@ -47,9 +48,6 @@ pub(crate) struct ChangedWalker<'a, K: Kind> {
     /// The whole force, if it is as simple.
     even: Option<Even<K>>,
     ahead: Ahead,
-    /// How far [m] and how long [s] a leg is at most, where a force varies.
-    farthest: f64,
-    longest: f64,
     /// Where [m along the slope] and when [s] the forces change next.
     cut: Option<Real<K>>,
     moment: Option<Real<K>>,
@@ -62,6 +60,7 @@ pub(crate) struct ChangedWalker<'a, K: Kind> {
     begins: Real<K>,
     pace: Pace<K>,
     force: Force<K>,
+    defect: Option<Defect<K>>,
     border: Border,
     /// Where, how fast, and after what time the leg ends.
     arrives: Real<K>,
@@ -96,8 +95,6 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
             base: None,
             even: None,
             ahead: Ahead::default(),
-            farthest: f64::INFINITY,
-            longest: f64::INFINITY,
             cut: None,
             moment: None,
             whole: 0,
@@ -106,6 +103,7 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
             begins: zero,
             pace: Pace::new(release.speed),
             force: Force { a: zero, b: zero, c: zero },
+            defect: None,
             border: Border::Nothing,
             arrives: zero,
             arrival: Pace::new(zero),
@@ -133,12 +131,9 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         self.moment = self.forces.next(Axis::Time, time);
         self.look_at_depth(time);
         self.whole = self.whole_pieces();
-        self.farthest = self.forces.longest(Axis::Place, at);
-        self.longest = self.forces.longest(Axis::Time, time);
-        self.added = Rate::default();
         let speed = self.pace.u;
         let here = Moment { place: at.into(), time: time.into(), speed };
-        self.forces.add_to(&mut self.added, &here, false);
+        self.added = self.forces.even(&here);
         let base = self
             .uniform
             .filter(|_| self.carries)
@@ -177,23 +172,32 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         beyond(self.cut, self.place) || beyond(self.moment, self.begins)
     }
 
-    /// The rates of law and forces on the leg's piece.
-    fn rate(&self, at: &Moment<K>) -> Rate<K> {
+    /// The rates of law and forces on the leg's piece, those that act at its
+    /// beginning.
+    fn rate(&self, from: &Moment<K>, at: &Moment<K>) -> Rate<K> {
         let site = || self.path.site(self.index, self.begins.value());
         let law = || self.law.rate(&site(), at.speed);
         let mut rate = self.uniform.unwrap_or_else(law) + self.added;
-        self.forces.add_to(&mut rate, at, true);
+        for term in self.forces.varying_from(from) {
+            rate = rate + term.rate_at(at);
+        }
         rate.mu = rate.mu.max(0.0);
         rate
     }
 
-    /// The forces as du/dt = a - c u^2 in a given state; where they bend,
-    /// what depends on the speed otherwise is in a.
+    /// The forces as du/dt = a - c u^2 in a given state, those that act at the
+    /// leg's beginning; where they bend, what depends on the speed otherwise
+    /// is in a.
     #[inline(always)]
-    fn balance(&self, piece: &Piece, at: &Moment<K>) -> Force<K> {
-        let Some(base) = self.base else { return self.balance_of(at) };
+    fn balance(
+        &self,
+        piece: &Piece,
+        from: &Moment<K>,
+        at: &Moment<K>,
+    ) -> Force<K> {
+        let Some(base) = self.base else { return self.balance_of(from, at) };
         let mut sum = base;
-        for term in self.forces.varying() {
+        for term in self.forces.varying_from(from) {
             sum = sum.and(term, at);
         }
         let (a, c) = sum.at_speed(piece, &self.tilt, at.speed);
@@ -202,8 +206,8 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
 
     /// The same where the law differs from piece to piece.
     #[inline(never)]
-    fn balance_of(&self, at: &Moment<K>) -> Force<K> {
-        let (rate, speed) = (self.rate(at), at.speed);
+    fn balance_of(&self, from: &Moment<K>, at: &Moment<K>) -> Force<K> {
+        let (rate, speed) = (self.rate(from, at), at.speed);
         let (pull, load) = self.tilt.ground(self.piece());
         let pressed = rate.pressed * self.piece().curvature;
         // A bend that lifts the mass off leaves it without friction.
@@ -218,8 +222,13 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         Force { a, b: rate.linear, c }
     }
 
-    /// The force on a stretch of a piece, from a place [m along the slope]
-    /// and a time [s] on, that is left before `limit` [s].
+    /// The mean force on a stretch of a piece, from a place [m along the
+    /// slope] and a time [s] on, that is left before `limit` [s], and what it
+    /// is beyond that.
+    ///
+    /// The stages are those of Kutta's method: with the force f0 at the
+    /// beginning, that in the middle where f0 would lead, that at the end
+    /// where 2 fm - f0 would.
     #[inline(always)]
     fn force_on(
         &self,
@@ -227,35 +236,37 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         [place, length]: [Real<K>; 2],
         pace: &Pace<K>,
         begins: Real<K>,
-        limit: f64,
-    ) -> Force<K> {
-        let middle = place + length * 0.5 + self.path.track.origin();
-        let mut at = Moment { place: middle, time: begins, speed: pace.u };
-        let mut first = self.balance(piece, &at);
-        if self.longest.is_finite() {
-            let most = limit - begins;
-            let lasts = first.lasts_about(pace, length).unwrap_or(most);
-            at.time += lasts.min(most) * 0.5;
-            first = self.balance(piece, &at);
+        limit: Real<K>,
+    ) -> (Force<K>, Option<Defect<K>>) {
+        let place = place + self.path.track.origin();
+        let from = Moment { place, time: begins, speed: pace.u };
+        let first = self.balance(piece, &from, &from);
+        if !self.varies && !self.bends {
+            return (first, None);
         }
-        if !self.bends {
-            return first;
+        let most = limit - begins;
+        let lasts = first.lasts_about(pace, length);
+        // That of a mass that does not set off is not a number.
+        let lasts = if lasts <= most { lasts } else { most };
+        let passes = lasts.value() > 0.0 && lasts.value().is_finite();
+        if !passes {
+            return (first, None);
         }
-        let push = first.acceleration(pace.u);
-        let crossing = if pace.u > 0.0 {
-            length.value() / pace.u.value()
-        } else {
-            f64::INFINITY
+        let after = |part: f64, push: Real<K>| {
+            let t = lasts * part;
+            let speed = (pace.u + push * t).max(0.0);
+            let place = from.place + (pace.u + speed) * t * 0.5;
+            Moment { place, time: begins + t, speed }
         };
-        let lasts = (limit - begins.value()).min(crossing);
-        let reached = (pace.u + push * lasts).max(0.0);
-        let (w0, w1) = (pace.w, reached.squared());
-        if (w1 - w0).abs() < 1e-9 {
-            return first;
-        }
-        let last = self.balance(piece, &Moment { speed: reached, ..at });
-        let slope = (last.a - first.a) / (w1 - w0);
-        Force { a: first.a - slope * w0, c: first.c - slope, ..first }
+        let f0 = first.acceleration(pace.u);
+        let at = after(0.5, f0);
+        let middle = self.balance(piece, &from, &at);
+        let to = after(1.0, middle.acceleration(at.speed) * 2.0 - f0);
+        let last = self.balance(piece, &from, &to);
+        let stages = [first, middle, last];
+        let speeds = [pace.u, at.speed, to.speed];
+        let (mean, defect) = Defect::of(stages, speeds, lasts);
+        (mean, Some(defect))
     }
 
     /// After what time \[s\] a force that varies with the speed has to be
@@ -266,16 +277,20 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
     }
 
     /// When the leg ends at the latest: an added force changes, or has to be
-    /// looked at again.
+    /// looked at again. That is at moments which do not depend on any
+    /// parameter, so that derivatives are exact.
     fn latest(&self) -> Option<Real<K>> {
-        let time = self.begins.value();
-        let mut step = time + self.step();
-        if self.longest.is_finite() {
-            step = step.min(self.forces.stair(Axis::Time, time));
+        let (time, step) = (self.begins.value(), self.step());
+        let mut latest = f64::INFINITY;
+        if step.is_finite() {
+            latest = (((time + NEAR) / step).floor() + 1.0) * step;
+        }
+        if self.varies {
+            latest = latest.min(self.forces.stair(Axis::Time, time));
         }
         match self.moment {
-            Some(next) if next <= step => Some(next),
-            _ if step.is_finite() => Some(Real::new(step)),
+            Some(next) if next <= latest => Some(next),
+            _ if latest.is_finite() => Some(Real::new(latest)),
             next => next,
         }
     }
@@ -284,11 +299,13 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
     fn furthest(&self) -> (Real<K>, Border) {
         let piece = self.piece();
         let end = piece.start + piece.length;
-        let mut far = f64::INFINITY;
-        if end - self.place.value() > self.farthest {
-            let origin = self.path.track.origin();
-            let at = origin + self.place.value();
-            far = self.forces.stair(Axis::Place, at) - origin;
+        let (mut far, place) = (f64::INFINITY, self.place.value());
+        if self.varies {
+            let at = self.path.track.origin() + place;
+            if end - place > self.forces.longest(Axis::Place, at) {
+                far = self.forces.stair(Axis::Place, at)
+                    - self.path.track.origin();
+            }
         }
         match self.cut {
             Some(cut) if cut < end && cut <= far => (cut, Border::Place),
@@ -299,16 +316,18 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
 
     /// Finds the end of the leg that begins here and now.
     fn set_off(&mut self) -> Result<(), Stop> {
+        let zero = Real::new(0.0);
         if self.is_beyond_cut() {
             self.look_ahead();
         }
         let (reach, border) = self.furthest();
         let length = reach - self.place;
         let moment = self.latest();
-        let limit = moment.map_or(f64::INFINITY, |m| m.value());
+        let limit = moment.unwrap_or(Real::new(f64::INFINITY));
         let stretch = [self.place, length];
         let (pace, begins) = (&self.pace, self.begins);
-        self.force = self.force_on(self.piece(), stretch, pace, begins, limit);
+        (self.force, self.defect) =
+            self.force_on(self.piece(), stretch, pace, begins, limit);
         if self.pace.u <= 0.0 && self.force.a <= 0.0 {
             if !self.rests {
                 (self.rests, self.since) = (true, self.begins);
@@ -321,10 +340,16 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         match self.force.traverse(self.pace, length) {
             End::Leaves { arrival, after } => {
                 (self.arrival, self.after) = (arrival, after);
+                if let Some(defect) = &self.defect {
+                    (self.arrival, self.after) =
+                        defect.mended(&self.force, arrival, after);
+                }
             }
             End::Stops { distance, after } => {
-                self.arrives = self.place + distance;
-                self.arrival = Pace::new(Real::new(0.0));
+                let more =
+                    self.defect.map(|of| of.over(after).distance(after));
+                self.arrives = self.place + distance + more.unwrap_or(zero);
+                self.arrival = Pace::new(zero);
                 self.after = after;
                 self.border = Border::Rest;
             }
@@ -334,6 +359,7 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
             }
         }
         self.ends = (self.begins + self.after).value();
+        self.defect = self.defect.map(|defect| defect.over(self.after));
         self.end_by(moment)
     }
 
@@ -377,19 +403,33 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
     /// The same where some do.
     #[inline(never)]
     fn skim_varying(&mut self, time: f64) -> Result<(), Stop> {
-        let span = self.longest.min(self.step());
-        let moment = self.moment.map_or(f64::INFINITY, |m| m.value());
+        let step = self.step();
+        let moment = self.moment.unwrap_or(Real::new(f64::INFINITY));
+        let origin = self.path.track.origin();
+        let mut beyond = None;
         let cross = |piece: &Piece, Entry { pace, begins, .. }: &Entry<K>| {
             let [place, length] = [piece.start, piece.length].map(Real::new);
-            let limit = moment.min(begins.value() + span);
+            let time = begins.value();
+            let span = step.min(self.forces.longest(Axis::Time, time));
+            let limit = moment.min(*begins + span);
             let on = [place, length];
-            let force = self.force_on(piece, on, pace, *begins, limit);
-            (force, force.cross(*pace, length))
+            let (force, defect) =
+                self.force_on(piece, on, pace, *begins, limit);
+            let far = self.forces.longest(Axis::Place, origin + piece.start);
+            let crossed = force.cross(*pace, length);
+            let crossed = crossed.filter(|(_, after)| {
+                piece.length <= far && after.value() <= span
+            });
+            let Some((arrival, after)) = crossed else { return (force, None) };
+            let Some(defect) = defect else { return (force, crossed) };
+            let (arrival, after) = defect.mended(&force, arrival, after);
+            beyond = Some(defect.over(after));
+            (force, Some((arrival, after)))
         };
-        let most = [self.farthest, span];
         let (pieces, until) = (self.path.track.pieces(), self.until(time));
         let (entry, crossing) =
-            skim(pieces, self.entry(), self.whole, until, most, cross);
+            skim(pieces, self.entry(), self.whole, until, cross);
+        self.defect = beyond;
         self.enter(entry, crossing)
     }
 
@@ -416,10 +456,9 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
     /// Ends the leg at a time, under way.
     fn pause(&mut self, moment: Real<K>) {
         self.after = moment - self.begins;
-        let speed = self.force.speed_after(self.pace.u, self.after);
-        self.arrival = Pace::new(speed.max(0.0));
-        let covered = self.force.distance_after(self.pace.u, self.after);
-        self.arrives = self.place + covered;
+        self.defect = self.defect.map(|defect| defect.over(self.after));
+        let State { speed, distance, .. } = self.state(moment);
+        (self.arrival, self.arrives) = (Pace::new(speed.max(0.0)), distance);
         self.border = Border::Time;
         self.ends = moment.value();
     }
@@ -429,6 +468,7 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         let zero = Real::new(0.0);
         self.pace = Pace::new(zero);
         self.force = Force { a: zero, b: zero, c: zero };
+        self.defect = None;
         (self.arrives, self.arrival) = (self.place, self.pace);
         match moment {
             Some(moment) => {
@@ -451,7 +491,9 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         if after < 0.0 {
             return self.pace.u;
         }
-        self.force.speed_after(self.pace.u, after)
+        let speed = self.force.speed_after(self.pace.u, after);
+        let Some(defect) = &self.defect else { return speed };
+        (speed + defect.speed(after)).max(0.0)
     }
 
     /// The whole state there.
@@ -464,11 +506,17 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         }
         let speed = self.force.speed_after(self.pace.u, after);
         let covered = self.force.distance_after(self.pace.u, after);
-        State {
+        let mut state = State {
             speed,
             distance: self.place + covered,
             acceleration: self.force.acceleration(speed),
+        };
+        if let Some(defect) = &self.defect {
+            state.speed = (speed + defect.speed(after)).max(0.0);
+            state.distance += defect.distance(after);
+            state.acceleration += defect.force(after);
         }
+        state
     }
 }
 

@@ -286,17 +286,21 @@ impl<K: Kind> Force<K> {
         })
     }
 
-    /// About how long a stretch lasts, from the force at its beginning;
-    /// `None` where the mass hardly gets going or is nearly stopped on it.
+    /// About how long a stretch lasts, from the force at its beginning: to its
+    /// far border, or to where the mass stops.
     #[inline(always)]
     pub(crate) fn lasts_about(
         &self,
         pace: &Pace<K>,
         length: Real<K>,
-    ) -> Option<Real<K>> {
-        let w = pace.w + self.acceleration(pace.u) * length * 2.0;
-        let finite = w.value() > 0.0 && w.value().is_finite();
-        finite.then(|| length * 2.0 / (pace.u + w.sqrt()))
+    ) -> Real<K> {
+        let push = self.acceleration(pace.u);
+        let w = pace.w + push * length * 2.0;
+        if w.value() > 0.0 {
+            length * 2.0 / (pace.u + w.sqrt())
+        } else {
+            pace.u / -push
+        }
     }
 
     /// About how long `length` takes, from the force at its beginning.

@@ -13,6 +13,7 @@ pub mod track;
 mod ahead;
 mod by_speed;
 mod changed;
+mod defect;
 mod eight;
 mod elementary;
 mod exact;

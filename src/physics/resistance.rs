@@ -30,12 +30,9 @@ impl<K: Kind> Resistance<K> {
         !self.linear.is_constantly_zero()
     }
 
-    /// The same with the part of a term that acts in a state.
+    /// The same with a term in a state.
     #[inline(always)]
     pub(crate) fn and(self, term: &Term<K>, at: &Moment<K>) -> Self {
-        if !term.acts(at) {
-            return self;
-        }
         let (rate, part) = (&term.rate, term.strength(at));
         Self {
             mu: self.mu + rate.mu * part,

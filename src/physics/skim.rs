@@ -31,14 +31,10 @@ pub(crate) struct Crossing<K: Kind> {
 /// The arrival at the far border and the time it takes.
 pub(crate) type Crossed<K> = Option<(Pace<K>, Real<K>)>;
 
-/// No bound on how far and how long a leg is.
-const UNBOUNDED: [f64; 2] = [f64::INFINITY; 2];
-
 /// Crosses whole pieces, under a force without a part linear in the speed,
 /// until one holds `time`: that one, and how it is crossed. Without a crossing
 /// the piece has to be entered in the general way: it is the one numbered
-/// `last`, goes farther \[m\] or lasts longer \[s\] than allowed, or is not
-/// left.
+/// `last`, or is not crossed so.
 #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN ends it too")]
 #[expect(clippy::needless_range_loop, reason = "the index is handed back")]
 #[inline(always)]
@@ -47,7 +43,6 @@ pub(crate) fn skim<K: Kind>(
     entry: Entry<K>,
     last: usize,
     time: f64,
-    [farthest, longest]: [f64; 2],
     mut cross: impl FnMut(&Piece, &Entry<K>) -> (Force<K>, Crossed<K>),
 ) -> (Entry<K>, Option<Crossing<K>>) {
     let Entry { index: first, mut pace, mut begins } = entry;
@@ -57,11 +52,6 @@ pub(crate) fn skim<K: Kind>(
         let Some((arrival, after)) = crossed else {
             return (Entry { index, pace, begins }, None);
         };
-        let far = farthest.is_finite() && piece.length > farthest;
-        let long = longest.is_finite() && !(after.value() <= longest);
-        if far || long {
-            return (Entry { index, pace, begins }, None);
-        }
         let ends = begins.value() + after.value();
         if !(ends <= time) {
             let crossing = Crossing { force, arrival, after, ends };
@@ -73,8 +63,7 @@ pub(crate) fn skim<K: Kind>(
     (Entry { index: last.max(first), pace, begins }, None)
 }
 
-/// The same under a force that is the same on every piece but for its slope,
-/// without bounds.
+/// The same under a force that is the same on every piece but for its slope.
 #[inline(always)]
 pub(crate) fn skim_even<K: Kind>(
     track: &Track,
@@ -92,5 +81,5 @@ pub(crate) fn skim_even<K: Kind>(
             .or_else(|| force.cross(*pace, Real::new(piece.length)));
         (force, crossed)
     };
-    skim(track.pieces(), entry, last, time, UNBOUNDED, cross)
+    skim(track.pieces(), entry, last, time, cross)
 }

@@ -106,9 +106,9 @@ fn model(of: &Blocks) -> Assembled {
     model.with_mechanisms(found, &none).unwrap()
 }
 
-/// Whether the motion is by the secant: a law of the speed with a change, or a
-/// change that is one. Its error is of second order in the step.
-fn is_by_secant(of: &Blocks) -> bool {
+/// Whether the motion is by stages: a law of the speed with a change, or a
+/// change that is one. Its error is of third order in the step.
+fn is_by_stages(of: &Blocks) -> bool {
     let is_bent =
         |name: &str| ["velocity-weakening", "viscous-drag"].contains(&name);
     let by_law = of.laws.iter().any(|i| is_bent(LAWS[*i].name()));
@@ -211,7 +211,7 @@ fn nothing_that_brakes_gives_energy() {
             0.5 * u * u + GRAVITY * track.position(s.distance.value()).1
         };
         let mut scale = 1e3_f64;
-        let slack = if is_by_secant(of) { 1e-6 } else { 1e-8 };
+        let slack = if is_by_stages(of) { 1e-6 } else { 1e-8 };
         for pair in states.windows(2) {
             let [before, after] = [energy(&pair[0]), energy(&pair[1])];
             scale = scale.max(before.abs()).max(after.abs());
@@ -280,9 +280,7 @@ fn gradients_are_differences() {
         let model = model(of);
         let posterior = Posterior::new(&model).unwrap();
         let (density, _, z) = drawn(&posterior, of.seed);
-        // The secant's steps are kinks of their own.
         let is_usual = density.rejected.is_none()
-            && !is_by_secant(of)
             && density.log_likelihood.abs() < 1e6
             && z.len() == posterior.dimension();
         if !is_usual {

@@ -10,7 +10,7 @@ use crate::mechanism::{
     Candidate, Change, Extent, Family, Missing, Noun, Unknown,
 };
 use crate::physics::Rate;
-use crate::physics::forces::{Axis, Range, STEPS, Shape, Term};
+use crate::physics::forces::{Axis, Range, Shape, Term};
 use crate::prior::AnyPrior;
 use crate::scalar::{Kind, Real};
 
@@ -22,6 +22,10 @@ pub(crate) const SAYS: &str =
 
 /// What it adds to the equation of motion.
 pub(crate) const FORMULA: &str = "+ f(s), f free";
+
+/// Into how many steps of time a run is cut at least: along the speed, the
+/// force has a kink in the middle of each of its cells.
+const STEPS: f64 = 100.0;
 
 /// A force of free form, in cells along an axis.
 #[derive(Debug, Clone)]
