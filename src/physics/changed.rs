@@ -18,6 +18,14 @@ use super::track::Piece;
 use crate::error::Stop;
 use crate::scalar::{Kind, Real};
 
+/// Up to what stiffness times step a force is asked for no more often: speeds of
+/// 30 m/s are right to 1 mm/s then (`tests/physics/changed_motion.rs`). Beyond
+/// 2.5 stages of third order are not stable.
+const STIFF: f64 = 0.25;
+/// How often a step of time is halved at the most: a mass that is braked more
+/// than the last one bears hardly moves.
+const MOST_HALVED: u32 = 6;
+
 /// What ends a leg.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Border {
@@ -48,6 +56,9 @@ pub(crate) struct ChangedWalker<'a, K: Kind> {
     /// The whole force, if it is as simple.
     even: Option<Even<K>>,
     ahead: Ahead,
+    /// After what time [s] at most a force that varies with the speed is asked
+    /// for again.
+    step: f64,
     /// Where [m along the slope] and when [s] the forces change next.
     cut: Option<Real<K>>,
     moment: Option<Real<K>>,
@@ -95,6 +106,7 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
             base: None,
             even: None,
             ahead: Ahead::default(),
+            step: f64::INFINITY,
             cut: None,
             moment: None,
             whole: 0,
@@ -112,6 +124,9 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
             rests: false,
             since: zero,
         };
+        if walker.bends {
+            walker.step = walker.stable_step();
+        }
         walker.look_ahead();
         walker.set_off()?;
         Ok(walker)
@@ -172,8 +187,8 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         beyond(self.cut, self.place) || beyond(self.moment, self.begins)
     }
 
-    /// The rates of law and forces on the leg's piece, those that act at its
-    /// beginning.
+    /// The rates of law and forces on the leg's piece: of the terms that act at
+    /// `from`, in the state `at`.
     fn rate(&self, from: &Moment<K>, at: &Moment<K>) -> Rate<K> {
         let site = || self.path.site(self.index, self.begins.value());
         let law = || self.law.rate(&site(), at.speed);
@@ -185,9 +200,9 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         rate
     }
 
-    /// The forces as du/dt = a - c u^2 in a given state, those that act at the
-    /// leg's beginning; where they bend, what depends on the speed otherwise
-    /// is in a.
+    /// The forces as du/dt = a - c u^2, of the terms that act at `from`, in the
+    /// state `at`; where they bend, what depends on the speed otherwise is in
+    /// a.
     #[inline(always)]
     fn balance(
         &self,
@@ -223,8 +238,8 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
     }
 
     /// The mean force on a stretch of a piece, from a place [m along the
-    /// slope] and a time [s] on, that is left before `limit` [s], and what it
-    /// is beyond that.
+    /// slope] and a time [s] on, that is left before a moment, and what it is
+    /// beyond that.
     ///
     /// The stages are those of Kutta's method: with the force f0 at the
     /// beginning, that in the middle where f0 would lead, that at the end
@@ -236,7 +251,7 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         [place, length]: [Real<K>; 2],
         pace: &Pace<K>,
         begins: Real<K>,
-        limit: Real<K>,
+        moment: Option<Real<K>>,
     ) -> (Force<K>, Option<Defect<K>>) {
         let place = place + self.path.track.origin();
         let from = Moment { place, time: begins, speed: pace.u };
@@ -244,12 +259,11 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         if !self.varies && !self.bends {
             return (first, None);
         }
-        let most = limit - begins;
-        let lasts = first.lasts_about(pace, length);
-        // That of a mass that does not set off is not a number.
-        let lasts = if lasts <= most { lasts } else { most };
-        let passes = lasts.value() > 0.0 && lasts.value().is_finite();
-        if !passes {
+        let mut lasts = first.lasts_about(pace, length);
+        if let Some(moment) = moment {
+            lasts = lasts.min(moment - begins);
+        }
+        if !(lasts.value() > 0.0 && lasts.value().is_finite()) {
             return (first, None);
         }
         let after = |part: f64, push: Real<K>| {
@@ -269,20 +283,27 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         (mean, Some(defect))
     }
 
-    /// After what time \[s\] a force that varies with the speed has to be
-    /// looked at again.
-    fn step(&self) -> f64 {
-        let bent = self.bends && !self.rests;
-        if bent { self.forces.step } else { f64::INFINITY }
+    /// The step of the forces, halved until it suits how stiff they are.
+    fn stable_step(&self) -> f64 {
+        let law = self.uniform.map_or(0.0, |rate| rate.linear.value().abs());
+        let stiffness = law + self.forces.stiffness();
+        let mut step = self.forces.step;
+        for _ in 0..MOST_HALVED {
+            if step * stiffness <= STIFF {
+                break;
+            }
+            step *= 0.5;
+        }
+        step
     }
 
     /// When the leg ends at the latest: an added force changes, or has to be
     /// looked at again. That is at moments which do not depend on any
     /// parameter, so that derivatives are exact.
     fn latest(&self) -> Option<Real<K>> {
-        let (time, step) = (self.begins.value(), self.step());
+        let (time, step) = (self.begins.value(), self.step);
         let mut latest = f64::INFINITY;
-        if step.is_finite() {
+        if step.is_finite() && !self.rests {
             latest = (((time + NEAR) / step).floor() + 1.0) * step;
         }
         if self.varies {
@@ -316,51 +337,90 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
 
     /// Finds the end of the leg that begins here and now.
     fn set_off(&mut self) -> Result<(), Stop> {
-        let zero = Real::new(0.0);
         if self.is_beyond_cut() {
             self.look_ahead();
         }
+        let rested = std::mem::take(&mut self.rests);
         let (reach, border) = self.furthest();
         let length = reach - self.place;
         let moment = self.latest();
-        let limit = moment.unwrap_or(Real::new(f64::INFINITY));
-        let stretch = [self.place, length];
-        let (pace, begins) = (&self.pace, self.begins);
-        (self.force, self.defect) =
-            self.force_on(self.piece(), stretch, pace, begins, limit);
+        self.ask(length, moment);
         if self.pace.u <= 0.0 && self.force.a <= 0.0 {
-            if !self.rests {
-                (self.rests, self.since) = (true, self.begins);
+            if !rested {
+                self.since = self.begins;
             }
+            self.rests = true;
             self.wait(self.latest());
             return Ok(());
         }
-        self.rests = false;
         (self.arrives, self.border) = (reach, border);
+        self.traverse(length);
+        self.ends = (self.begins + self.after).value();
+        self.end_by(moment)?;
+        if self.ends == f64::INFINITY {
+            // What is never over has no parabola.
+            self.defect = None;
+        }
+        Ok(())
+    }
+
+    /// Asks for the force on the leg.
+    #[inline(always)]
+    fn ask(&mut self, length: Real<K>, moment: Option<Real<K>>) {
+        if let Some(even) = &self.even {
+            (self.force, self.defect) = (even.on(self.piece()), None);
+            return;
+        }
+        let stretch = [self.place, length];
+        let (pace, begins) = (&self.pace, self.begins);
+        (self.force, self.defect) =
+            self.force_on(self.piece(), stretch, pace, begins, moment);
+    }
+
+    /// Finds how a stretch ends if nothing ends it before.
+    #[inline(always)]
+    fn traverse(&mut self, length: Real<K>) {
         match self.force.traverse(self.pace, length) {
             End::Leaves { arrival, after } => {
                 (self.arrival, self.after) = (arrival, after);
-                if let Some(defect) = &self.defect {
-                    (self.arrival, self.after) =
-                        defect.mended(&self.force, arrival, after);
+                if self.defect.is_some() {
+                    self.mend(length);
                 }
             }
             End::Stops { distance, after } => {
-                let more =
-                    self.defect.map(|of| of.over(after).distance(after));
-                self.arrives = self.place + distance + more.unwrap_or(zero);
-                self.arrival = Pace::new(zero);
-                self.after = after;
-                self.border = Border::Rest;
+                self.stop(distance, length, after);
             }
             End::Never => {
                 self.after = Real::new(f64::INFINITY);
                 self.border = Border::Nothing;
             }
         }
-        self.ends = (self.begins + self.after).value();
-        self.defect = self.defect.map(|defect| defect.over(self.after));
-        self.end_by(moment)
+    }
+
+    /// Adds to the arrival what the force is beyond its mean.
+    #[inline(never)]
+    fn mend(&mut self, length: Real<K>) {
+        let Some(defect) = &mut self.defect else { return };
+        defect.lasts = self.after;
+        match defect.mended(&self.force, self.arrival, self.after) {
+            Some((arrival, after)) => {
+                (self.arrival, self.after) = (arrival, after);
+            }
+            None => self.stop(length, length, self.after),
+        }
+    }
+
+    /// Ends the leg at rest, before its far border.
+    fn stop(&mut self, distance: Real<K>, length: Real<K>, after: Real<K>) {
+        let mut covered = distance;
+        if let Some(defect) = &mut self.defect {
+            defect.lasts = after;
+            covered += defect.distance(after);
+        }
+        self.arrives = self.place + covered.min(length - NEAR).max(0.0);
+        self.arrival = Pace::new(Real::new(0.0));
+        self.after = after;
+        self.border = Border::Rest;
     }
 
     /// Ends the leg at a moment, unless it ends before.
@@ -397,34 +457,32 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         let (track, ahead) = (self.path.track, &mut self.ahead);
         let (entry, crossing) =
             skim_even(track, even, ahead, entry, self.whole, until);
+        self.defect = None;
         self.enter(entry, crossing)
     }
 
     /// The same where some do.
     #[inline(never)]
     fn skim_varying(&mut self, time: f64) -> Result<(), Stop> {
-        let step = self.step();
-        let moment = self.moment.unwrap_or(Real::new(f64::INFINITY));
-        let origin = self.path.track.origin();
+        let (step, origin) = (self.step, self.path.track.origin());
         let mut beyond = None;
         let cross = |piece: &Piece, Entry { pace, begins, .. }: &Entry<K>| {
+            beyond = None;
             let [place, length] = [piece.start, piece.length].map(Real::new);
-            let time = begins.value();
-            let span = step.min(self.forces.longest(Axis::Time, time));
-            let limit = moment.min(*begins + span);
             let on = [place, length];
             let (force, defect) =
-                self.force_on(piece, on, pace, *begins, limit);
+                self.force_on(piece, on, pace, *begins, self.moment);
+            let time = begins.value();
+            let span = step.min(self.forces.longest(Axis::Time, time));
             let far = self.forces.longest(Axis::Place, origin + piece.start);
-            let crossed = force.cross(*pace, length);
-            let crossed = crossed.filter(|(_, after)| {
+            let crossed = force.cross(*pace, length).filter(|(_, after)| {
                 piece.length <= far && after.value() <= span
             });
             let Some((arrival, after)) = crossed else { return (force, None) };
-            let Some(defect) = defect else { return (force, crossed) };
-            let (arrival, after) = defect.mended(&force, arrival, after);
-            beyond = Some(defect.over(after));
-            (force, Some((arrival, after)))
+            let Some(mut defect) = defect else { return (force, crossed) };
+            defect.lasts = after;
+            beyond = Some(defect);
+            (force, defect.mended(&force, arrival, after))
         };
         let (pieces, until) = (self.path.track.pieces(), self.until(time));
         let (entry, crossing) =
@@ -456,7 +514,9 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
     /// Ends the leg at a time, under way.
     fn pause(&mut self, moment: Real<K>) {
         self.after = moment - self.begins;
-        self.defect = self.defect.map(|defect| defect.over(self.after));
+        if let Some(defect) = &mut self.defect {
+            defect.lasts = self.after;
+        }
         let State { speed, distance, .. } = self.state(moment);
         (self.arrival, self.arrives) = (Pace::new(speed.max(0.0)), distance);
         self.border = Border::Time;
@@ -512,9 +572,11 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
             acceleration: self.force.acceleration(speed),
         };
         if let Some(defect) = &self.defect {
-            state.speed = (speed + defect.speed(after)).max(0.0);
+            let speed = (speed + defect.speed(after)).max(0.0);
+            state.speed = speed;
             state.distance += defect.distance(after);
-            state.acceleration += defect.force(after);
+            state.acceleration =
+                self.force.acceleration(speed) + defect.force(after);
         }
         state
     }

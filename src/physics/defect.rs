@@ -9,10 +9,11 @@
 //!
 //! Integrated once and twice it is what speed and distance are off,
 //!
-//! du = h (x^2 - x)(k + l (2 x - 1)/3)/2 - 2 c u ds,
+//! du = h (x^2 - x)(k + l (2 x - 1)/3)/2 - (b + 2 c u) ds,
 //! ds = h^2 x^2 (k (2 x - 3) + l (1 - x)^2)/12,
 //!
-//! the drag answering to first order. At the end of the leg ds = -k h^2/12.
+//! where the drag answers to what the speed is off, to first order. At the end
+//! of the leg ds = -k h^2/12.
 
 use super::exact::{Force, Pace};
 use crate::scalar::{Kind, Real};
@@ -22,10 +23,10 @@ use crate::scalar::{Kind, Real};
 pub(super) struct Defect<K: Kind> {
     slope: Real<K>,
     bow: Real<K>,
-    /// 2 c u in the middle of the leg [1/s].
+    /// b + 2 c u in the middle of the leg [1/s].
     damping: Real<K>,
-    /// How long the leg lasts [s].
-    lasts: Real<K>,
+    /// How long the leg lasts under the mean force [s].
+    pub(super) lasts: Real<K>,
 }
 
 impl<K: Kind> Defect<K> {
@@ -42,13 +43,8 @@ impl<K: Kind> Defect<K> {
         let a1 = last.a + (c - last.c) * u1 * u1;
         let a = (a0 + middle.a * 4.0 + a1) * (1.0 / 6.0);
         let (slope, bow) = (a1 - a0, (a0 + a1 - a * 2.0) * 3.0);
-        let damping = c * u * 2.0;
+        let damping = middle.b + c * u * 2.0;
         (Force { a, ..middle }, Self { slope, bow, damping, lasts })
-    }
-
-    /// The same on a leg that lasts so long \[s\].
-    pub(super) fn over(self, lasts: Real<K>) -> Self {
-        Self { lasts, ..self }
     }
 
     /// How much more the force is after a time \[m/s2\].
@@ -73,22 +69,24 @@ impl<K: Kind> Defect<K> {
         after * after * bent * (1.0 / 12.0)
     }
 
-    /// How a leg ends at its far border that ends so under the mean force.
+    /// The arrival at the far border and the time it takes, from those under
+    /// the mean force; `None` where the mass stops before it.
     pub(super) fn mended(
         &self,
         force: &Force<K>,
         arrival: Pace<K>,
         after: Real<K>,
-    ) -> (Pace<K>, Real<K>) {
-        // What is left of the way, and the force on it.
+    ) -> Option<(Pace<K>, Real<K>)> {
+        // How much of the way is left at the same time, less than none where
+        // the mass is beyond, and the force on it.
         let left = self.slope * after * after * (1.0 / 12.0);
         let last = self.slope * 0.5 + self.bow * (1.0 / 6.0);
         let push = force.acceleration(arrival.u) + last;
         let w = arrival.w + left * (push + self.damping * arrival.u) * 2.0;
         if w.value() <= 0.0 {
-            return (arrival, after);
+            return None;
         }
         let u = w.sqrt();
-        (Pace { u, w }, after + left * 2.0 / (arrival.u + u))
+        Some((Pace { u, w }, after + left * 2.0 / (arrival.u + u)))
     }
 }

@@ -286,8 +286,8 @@ impl<K: Kind> Force<K> {
         })
     }
 
-    /// About how long a stretch lasts, from the force at its beginning: to its
-    /// far border, or to where the mass stops.
+    /// How long a stretch lasts that is left to its far border, or ends at
+    /// rest: about, where the mass is far from both.
     #[inline(always)]
     pub(crate) fn lasts_about(
         &self,
@@ -296,10 +296,17 @@ impl<K: Kind> Force<K> {
     ) -> Real<K> {
         let push = self.acceleration(pace.u);
         let w = pace.w + push * length * 2.0;
-        if w.value() > 0.0 {
-            length * 2.0 / (pace.u + w.sqrt())
-        } else {
-            pace.u / -push
+        if w.value() > 0.0 && w.value().is_finite() {
+            return length * 2.0 / (pace.u + w.sqrt());
+        }
+        self.lasts(*pace, length)
+    }
+
+    #[inline(never)]
+    fn lasts(&self, pace: Pace<K>, length: Real<K>) -> Real<K> {
+        match self.traverse(pace, length) {
+            End::Leaves { after, .. } | End::Stops { after, .. } => after,
+            End::Never => Real::new(f64::INFINITY),
         }
     }
 

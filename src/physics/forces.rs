@@ -7,6 +7,7 @@
 
 use smallvec::SmallVec;
 
+use super::GRAVITY;
 use super::friction::Rate;
 use crate::block::List;
 use crate::scalar::{Kind, Real};
@@ -15,8 +16,8 @@ use crate::scalar::{Kind, Real};
 /// the speed.
 pub const STEPS: f64 = 40.0;
 
-/// Into how many legs at least a run is cut for a shape that changes steadily
-/// along an axis. The error falls with their third power: speeds are right to
+/// How many stairs a shape that changes steadily along an axis has: a leg is no
+/// longer than that on which it begins. The error falls with their third power: speeds are right to
 /// 0.4 mm/s where friction doubles within a fifth of a run (measured in
 /// `tests/physics/changed_motion.rs`). A log likelihood of five hundred values
 /// of an avalanche changes by 0.06 at the most where they are far shorter
@@ -276,6 +277,18 @@ impl<K: Kind> Term<K> {
         of_speed || self.steadily().is_some()
     }
 
+    fn stiffness(&self) -> f64 {
+        let Rate { mu, constant, linear, .. } = self.rate;
+        let by_shape = match self.shape {
+            Shape::WithSpeed(scale) => {
+                (mu.value().abs() * GRAVITY + constant.value().abs())
+                    / scale.value()
+            }
+            _ => 0.0,
+        };
+        linear.value().abs() + by_shape
+    }
+
     /// Whether it varies with the speed in another way than its square.
     fn bends(&self) -> bool {
         let of_speed = matches!(
@@ -322,8 +335,8 @@ pub struct Forces<K: Kind> {
     pub terms: SmallVec<[Term<K>; 2]>,
     /// By how much the ground is steeper than the track says \[radians\].
     pub tilt: Real<K>,
-    /// Over what time \[s\] a force that varies with the speed is taken as
-    /// linear in its square.
+    /// After what time \[s\] at most a force that varies with the speed is
+    /// asked for again.
     pub step: f64,
 }
 
@@ -351,6 +364,12 @@ impl<K: Kind> Forces<K> {
 
     pub(crate) fn bends(&self) -> bool {
         self.terms.iter().any(Term::bends)
+    }
+
+    /// About how much more they brake a mass the faster it is, at the most
+    /// \[1/s\], beside what grows with the square of the speed.
+    pub(crate) fn stiffness(&self) -> f64 {
+        self.terms.iter().map(Term::stiffness).sum()
     }
 
     /// What the terms that do not vary add at a moment.

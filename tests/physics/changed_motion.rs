@@ -179,6 +179,55 @@ fn viscous_drag_by_stages_is_the_exact_law() {
 }
 
 #[test]
+fn a_stiff_drag_is_asked_for_more_often() {
+    let at = times(20.0);
+    // With a step of 2 s the stages would be stable up to 1.25/s.
+    for drag in [3.0, 0.6] {
+        let rate = Rate { linear: Real::new(drag), ..Rate::default() };
+        let forces = of(rate, Stretch::Everywhere, Shape::Even);
+        let forces = Forces { step: 2.0, ..forces };
+        let found = changed(&bent(), "coulomb", &[0.2], &forces, &at);
+        let law = "coulomb + viscous";
+        let expected = plain(&bent(), law, &[0.2, drag], &at);
+        let worst = worst(&found, &expected);
+        assert!(worst < 1e-3, "{drag}: {worst}");
+    }
+}
+
+#[test]
+fn linear_drag_of_the_law_beside_a_steady_change() {
+    let at = times(16.0);
+    let range = Range { begin: 0.0, span: 16.0 };
+    let rate = Rate { mu: Real::new(0.2), ..Rate::default() };
+    let shape = Shape::Linear(Axis::Time, range);
+    let forces = of(rate, Stretch::Everywhere, shape);
+    let law = "coulomb + viscous";
+    let found = changed(&bent(), law, &[0.2, 0.1], &forces, &at);
+    let expected = integrated(&bent(), &at, |piece, _, t, u| {
+        piece.pull - (0.2 + 0.2 * t / 16.0) * piece.load - 0.1 * u
+    });
+    let worst = worst(&found, &expected);
+    assert!(worst < 5e-4, "{worst}");
+}
+
+#[test]
+fn a_mass_that_never_leaves_its_track_goes_on_under_a_change_that_is_over() {
+    // Faster than the terminal speed at the end of the range, on a slope
+    // without an end.
+    let range = Range { begin: 100.0, span: 60.0 };
+    let shape: Shape<Plain> = Shape::Linear(Axis::Place, range);
+    let rate = Rate { mu: Real::new(0.1), ..Rate::default() };
+    let forces = of(rate, Stretch::Everywhere, shape);
+    let at = times(400.0);
+    let found = changed(&bent(), "voellmy", &[0.1, 300.0], &forces, &at);
+    let last = *bent().pieces().last().unwrap();
+    let c = GRAVITY / (300.0 * 1.3);
+    let terminal = ((last.pull - 0.2 * last.load) / c).sqrt();
+    let speed = found.last().unwrap().value();
+    assert!((speed - terminal).abs() < 1e-6, "{speed} {terminal}");
+}
+
+#[test]
 fn velocity_weakening_by_stages_is_the_law_integrated() {
     let at = times(20.0);
     let rate = Rate { mu: Real::new(-0.15), ..Rate::default() };

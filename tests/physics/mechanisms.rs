@@ -265,8 +265,6 @@ fn states(
 
 /// The acceleration is read off the speeds, a thousandth of a second to either
 /// side: within one piece of the track.
-/// Forces that vary steadily are stairs of a hundredth of the run or less,
-/// half of which is up to 5 % of such a force here.
 #[test]
 fn every_force_is_what_its_formula_says() {
     let (track, half) = (bent(), 0.001);

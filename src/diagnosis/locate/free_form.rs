@@ -25,7 +25,7 @@ pub(crate) const FORMULA: &str = "+ f(s), f free";
 
 /// Into how many steps of time a run is cut at least: along the speed, the
 /// force has a kink in the middle of each of its cells.
-const STEPS: f64 = 100.0;
+const SHORT_STEPS: f64 = 100.0;
 
 /// A force of free form, in cells along an axis.
 #[derive(Debug, Clone)]
@@ -120,7 +120,7 @@ impl Missing for FreeForm {
         let rate = Rate { constant: Real::new(-1.0), ..Rate::default() };
         let range = range(&self.extent, self.axis);
         let mut change = Change::default();
-        change.forces.step = self.extent.duration / STEPS;
+        change.forces.step = self.extent.duration / SHORT_STEPS;
         change.forces.terms.push(Term {
             shape: Shape::Cells(self.axis, range, cells),
             ..Term::everywhere(rate)
