@@ -25,6 +25,7 @@ pub fn challenge_json(scored: &Scored) -> Value {
         "noise_kind": s.noise_kind.value(),
         "noise_kinds": s.noise_kinds.iter().map(kind).collect::<Map<_, _>>(),
         "fit_worse": s.worse.value(),
+        "fit_worse_most": s.most_worse,
         "least_squares_worse": s.worse_at_best.value(),
         "visible": {
             "cases": s.in_group_visible.of,

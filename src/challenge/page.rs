@@ -63,9 +63,13 @@ pub fn words(scored: &Scored) -> Vec<String> {
         "The corrected model leaves at most 1.15 times the noise in {}.",
         told(&s.within_noise)
     ));
+    let most = match s.most_worse {
+        0.0 => String::new(),
+        most => format!(", by {:.1} % of it at the most,", 100.0 * most),
+    };
     said.push(format!(
-        "The fit got worse in {} by its root mean square error, and in {} by \
-         the least that the motion can have.",
+        "The fit got worse in {} by its root mean square error{most} and in \
+         {} by the least that the motion can have.",
         told(&s.worse),
         told(&s.worse_at_best)
     ));

@@ -25,8 +25,9 @@ const WITHIN: f64 = 1.15;
 /// the prior odds of a name against `none`, and 5 for its parameters, which a
 /// diagnosis does not know beforehand.
 const VISIBLE: f64 = 8.0;
-/// What rounding may add to an error, as a share of it.
-const ROUNDING: f64 = 1e-9;
+/// What rounding may add to an error, as a share of it: two searches for the same
+/// least end 2e-9 apart.
+const ROUNDING: f64 = 1e-6;
 /// How many bins calibration is measured in.
 const BINS: usize = 5;
 
@@ -140,6 +141,11 @@ impl Outcome {
     /// Whether the posterior mean prediction got worse.
     pub fn worse(&self) -> bool {
         is_worse(self.answer.rmse_before, self.answer.rmse_after)
+    }
+
+    /// By what share of itself the error of that prediction grew.
+    fn growth(&self) -> f64 {
+        self.answer.rmse_after / self.answer.rmse_before - 1.0
     }
 
     /// Whether the least error of the motion did.
@@ -334,6 +340,8 @@ pub struct Score {
     /// The posterior mean prediction is further from the recording than
     /// before: all cases.
     pub worse: Share,
+    /// By what share of itself its error grew at the most; 0 where none did.
+    pub most_worse: f64,
     /// The least error of the motion is greater than before: all cases.
     pub worse_at_best: Share,
     /// The median overlap of located and true stretch; NaN of none.
@@ -378,6 +386,11 @@ impl Score {
             ),
             noise_kinds: noise_kinds(outcomes),
             worse: Share::count(outcomes.iter().map(Outcome::worse)),
+            most_worse: outcomes
+                .iter()
+                .filter(|o| o.worse())
+                .map(Outcome::growth)
+                .fold(0.0, f64::max),
             worse_at_best: Share::count(
                 outcomes.iter().map(Outcome::worse_at_best),
             ),
