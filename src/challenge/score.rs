@@ -191,6 +191,12 @@ impl Outcome {
     }
 }
 
+/// By what share of itself an error grew at the most, where it did.
+fn most_worse(outcomes: &[Outcome]) -> f64 {
+    let worse = outcomes.iter().filter(|outcome| outcome.worse());
+    worse.map(Outcome::growth).fold(0.0, f64::max)
+}
+
 fn is_worse(before: f64, after: f64) -> bool {
     after > before * (1.0 + ROUNDING)
 }
@@ -386,11 +392,7 @@ impl Score {
             ),
             noise_kinds: noise_kinds(outcomes),
             worse: Share::count(outcomes.iter().map(Outcome::worse)),
-            most_worse: outcomes
-                .iter()
-                .filter(|o| o.worse())
-                .map(Outcome::growth)
-                .fold(0.0, f64::max),
+            most_worse: most_worse(outcomes),
             worse_at_best: Share::count(
                 outcomes.iter().map(Outcome::worse_at_best),
             ),

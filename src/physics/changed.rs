@@ -91,8 +91,7 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         release: Release<K>,
     ) -> Result<Self, Stop> {
         let (index, _) = first_piece(path, &release)?;
-        let zero = Real::new(0.0);
-        let tilt = Tilt::by(forces.tilt);
+        let (zero, tilt) = (Real::new(0.0), Tilt::by(forces.tilt));
         let mut walker = Self {
             path: *path,
             law,
@@ -124,9 +123,6 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
             rests: false,
             since: zero,
         };
-        if walker.bends {
-            walker.step = walker.stable_step();
-        }
         walker.look_ahead();
         walker.set_off()?;
         Ok(walker)
@@ -149,6 +145,9 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         let speed = self.pace.u;
         let here = Moment { place: at.into(), time: time.into(), speed };
         self.added = self.forces.even(&here);
+        if self.bends {
+            self.step = step(self.forces, self.uniform.as_ref());
+        }
         let base = self
             .uniform
             .filter(|_| self.carries)
@@ -281,20 +280,6 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         let speeds = [pace.u, at.speed, to.speed];
         let (mean, defect) = Defect::of(stages, speeds, lasts);
         (mean, Some(defect))
-    }
-
-    /// The step of the forces, halved until it suits how stiff they are.
-    fn stable_step(&self) -> f64 {
-        let law = self.uniform.map_or(0.0, |rate| rate.linear.value().abs());
-        let stiffness = law + self.forces.stiffness();
-        let mut step = self.forces.step;
-        for _ in 0..MOST_HALVED {
-            if step * stiffness <= STIFF {
-                break;
-            }
-            step *= 0.5;
-        }
-        step
     }
 
     /// When the leg ends at the latest: an added force changes, or has to be
@@ -580,6 +565,20 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         }
         state
     }
+}
+
+/// The step of the forces, halved until it suits how stiff they and the law are.
+fn step<K: Kind>(forces: &Forces<K>, law: Option<&Rate<K>>) -> f64 {
+    let law = law.map_or(0.0, |rate| rate.linear.value().abs());
+    let stiffness = law + forces.stiffness();
+    let mut step = forces.step;
+    for _ in 0..MOST_HALVED {
+        if step * stiffness <= STIFF {
+            break;
+        }
+        step *= 0.5;
+    }
+    step
 }
 
 impl<K: Kind> Walker<K> for ChangedWalker<'_, K> {
