@@ -63,9 +63,10 @@ pub fn words(scored: &Scored) -> Vec<String> {
         "The corrected model leaves at most 1.15 times the noise in {}.",
         told(&s.within_noise)
     ));
-    let most = match s.most_worse {
-        0.0 => String::new(),
-        most => format!(", by {:.1} % of it at the most,", 100.0 * most),
+    let most = if s.most_worse > 0.0 {
+        format!(", by {:.1} % of it at the most,", 100.0 * s.most_worse)
+    } else {
+        String::new()
     };
     said.push(format!(
         "The fit got worse in {} by its root mean square error{most} and in \

@@ -25,9 +25,8 @@ const WITHIN: f64 = 1.15;
 /// the prior odds of a name against `none`, and 5 for its parameters, which a
 /// diagnosis does not know beforehand.
 const VISIBLE: f64 = 8.0;
-/// What rounding may add to an error, as a share of it: two searches for the same
-/// least end 2e-9 apart.
-const ROUNDING: f64 = 1e-6;
+/// What rounding may add to an error, as a share of it.
+const ROUNDING: f64 = 1e-9;
 /// How many bins calibration is measured in.
 const BINS: usize = 5;
 

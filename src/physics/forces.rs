@@ -17,11 +17,11 @@ use crate::scalar::{Kind, Real};
 pub const STEPS: f64 = 40.0;
 
 /// How many stairs a shape that changes steadily along an axis has: a leg is no
-/// longer than that on which it begins. The error falls with their third power: speeds are right to
-/// 0.4 mm/s where friction doubles within a fifth of a run (measured in
-/// `tests/physics/changed_motion.rs`). A log likelihood of five hundred values
-/// of an avalanche changes by 0.06 at the most where they are far shorter
-/// (docs/record/speed-tried.md).
+/// longer than that on which it begins. The error falls with their third power:
+/// speeds are right to 0.4 mm/s where friction doubles within a fifth of a run
+/// (measured in `tests/physics/changed_motion.rs`). A log likelihood of five
+/// hundred values of an avalanche changes by 0.06 at the most where they are far
+/// shorter (docs/record/speed-tried.md).
 const STAIRS: f64 = 40.0;
 
 /// Places \[m\] and times \[s\] nearer than this are the same.
