@@ -3,6 +3,8 @@
 
 use std::hash::{Hash, Hasher};
 
+use nalgebra::DMatrix;
+
 use crate::checkpoint::{Checkpoint, Name};
 use crate::error::Result;
 use crate::model::{Density, Information, Listener, Model, Point, Weights};
@@ -105,6 +107,14 @@ impl Model for Remembered<'_> {
     /// Not kept: it is asked for where a climb ends, and is long.
     fn information(&self, z: &[f64]) -> Result<Information> {
         self.model.information(z)
+    }
+
+    fn information_along(
+        &self,
+        z: &[f64],
+        directions: &DMatrix<f64>,
+    ) -> Result<Information> {
+        self.model.information_along(z, directions)
     }
 }
 

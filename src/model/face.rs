@@ -1,5 +1,7 @@
 //! Models as backends see them.
 
+use nalgebra::DMatrix;
+
 use super::density::{Density, Weights};
 use super::information::Information;
 use super::listener::Listener;
@@ -52,15 +54,16 @@ pub trait Model: Sync {
     /// As [`Model::evaluate`].
     fn information(&self, z: &[f64]) -> Result<Information>;
 
-    /// The same along one coordinate alone.
+    /// The same along some directions: rows of a matrix that has a column for
+    /// each coordinate.
     ///
     /// # Errors
     /// As [`Model::evaluate`].
     fn information_along(
         &self,
         z: &[f64],
-        coordinate: usize,
+        directions: &DMatrix<f64>,
     ) -> Result<Information> {
-        Ok(self.information(z)?.of_some(&[coordinate]))
+        Ok(self.information(z)?.along(directions))
     }
 }

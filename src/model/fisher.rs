@@ -8,10 +8,9 @@
 //! say themselves what a value tells. The prior adds its own curvature,
 //! parameter by parameter.
 
-use std::ops::Range;
-
 use nalgebra::DVector;
 
+use super::along::Along;
 use super::any_program::AnyProgram;
 use super::density::Density;
 use super::information::Information;
@@ -28,19 +27,18 @@ use crate::scalar::{Forward, Grad, Kind, Real};
 
 /// Derivatives of the innovations and of their scales, and how the priors bend.
 #[derive(Debug)]
-struct Columns {
+struct Columns<'d> {
     jacobian: Jacobian,
-    /// The coordinates that are looked at.
-    of: Range<usize>,
-    /// How many of these earlier passes looked at, and the next column.
+    along: Along<'d>,
+    /// How many directions earlier passes looked at, and the next column.
     done: usize,
     next: usize,
     /// Minus the second derivative of each prior's log density along the line;
-    /// zero of those that are not looked at.
+    /// zero of those that no direction changes.
     bends: Vec<f64>,
 }
 
-impl Columns {
+impl Columns<'_> {
     fn push<K: Forward>(&mut self, x: &Real<K>) {
         self.jacobian.write(self.next, self.done, x);
         self.next += 1;
@@ -48,18 +46,18 @@ impl Columns {
 }
 
 /// One run's part of them, the derivatives that its numbers carry.
-struct Part<'c, K: Kind> {
-    columns: &'c mut Columns,
+struct Part<'c, 'd, K: Kind> {
+    columns: &'c mut Columns<'d>,
     /// Of the series just heard.
     log_likelihood: Option<Real<K>>,
 }
 
-impl<K: Forward> Listener<K> for Part<'_, K> {
+impl<K: Forward> Listener<K> for Part<'_, '_, K> {
     fn parameter(&mut self, declaration: &Declaration<'_, K>) {
-        let Columns { of, done: 0, bends, .. } = &mut *self.columns else {
+        let Columns { along, done: 0, bends, .. } = &mut *self.columns else {
             return;
         };
-        let is_asked = of.contains(&bends.len());
+        let is_asked = along.change(bends.len());
         bends.push(if is_asked { bend(declaration) } else { 0.0 });
     }
 
@@ -121,18 +119,18 @@ const RESERVED: usize = 256;
 /// quarters of the time that one of 8 and another of 2 take, at 464 values.
 const MOST: usize = 16;
 
-/// The information of a program at a place on the real line, of some of the
-/// coordinates.
+/// The information of a program at a place on the real line, along some
+/// directions.
 pub(super) fn information(
     program: &dyn AnyProgram,
     z: &[f64],
-    of: Range<usize>,
+    along: Along<'_>,
 ) -> Result<Information> {
-    let count = of.len();
+    let count = along.count(z.len());
     let mut gradient = DVector::zeros(count);
     let mut columns = Columns {
         jacobian: Jacobian::new(count, RESERVED),
-        of: of.clone(),
+        along,
         done: 0,
         next: 0,
         bends: Vec::new(),
@@ -140,12 +138,12 @@ pub(super) fn information(
     let mut last = None;
     for (done, wide) in passes(count, MOST) {
         (columns.done, columns.next) = (done, 0);
-        let (first, slots) =
-            (of.start + done, &mut gradient.as_mut_slice()[done..]);
+        let slots = &mut gradient.as_mut_slice()[done..];
+        let along = along.from(done);
         let density = match wide {
-            4 => pass::<Grad<4>>(program, z, first, slots, &mut columns),
-            8 => pass::<Grad<8>>(program, z, first, slots, &mut columns),
-            _ => pass::<Grad<16>>(program, z, first, slots, &mut columns),
+            4 => pass::<Grad<4>>(program, z, along, slots, &mut columns),
+            8 => pass::<Grad<8>>(program, z, along, slots, &mut columns),
+            _ => pass::<Grad<16>>(program, z, along, slots, &mut columns),
         }?;
         let is_zero = density.rejected.is_some();
         last = Some(density);
@@ -157,9 +155,7 @@ pub(super) fn information(
         last.ok_or_else(|| Error::inference("the model has no parameters"))?;
     let Columns { jacobian, bends, .. } = columns;
     let mut precision = jacobian.squared();
-    for (i, bend) in bends.into_iter().skip(of.start).take(count).enumerate() {
-        precision[(i, i)] += bend;
-    }
+    along.add_diagonal(&bends, &mut precision);
     Ok(Information { density, gradient, precision, jacobian })
 }
 
@@ -167,11 +163,11 @@ pub(super) fn information(
 fn pass<K: Number + Forward>(
     program: &dyn AnyProgram,
     z: &[f64],
-    first: usize,
+    along: Along<'_>,
     gradient: &mut [f64],
-    columns: &mut Columns,
+    columns: &mut Columns<'_>,
 ) -> Result<Density> {
-    let source = Source::Line { z, first };
+    let source = Source::Line { z, along };
     let mut part = Part { columns: &mut *columns, log_likelihood: None };
     let (density, prior, jacobian, likelihood) =
         run::<K>(program, source, Some(z.len()), Some(&mut part))?;
@@ -188,7 +184,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::model::{Label, Posterior, Program, Run};
+    use crate::model::{Label, Posterior, Program, Run, coordinates};
     use crate::prior::{AnyPrior, Normal};
 
     /// 0.5 ~ N(a'x, 1) was seen, with x ~ N(0, 1) and a known.
@@ -227,7 +223,8 @@ mod tests {
             // Second differences of the prior's density over steps of 1e-3.
             assert!((&found.precision - precision).amax() < 1e-8, "{count}");
             for i in 0..count {
-                let along = posterior.information_along(&z, i).unwrap();
+                let one = coordinates(&[i], count);
+                let along = posterior.information_along(&z, &one).unwrap();
                 assert_eq!(along.density, found.density);
                 assert_eq!(along.gradient[0], found.gradient[i]);
                 assert_eq!(along.precision[0], found.precision[(i, i)]);

@@ -1,5 +1,6 @@
 //! Gradients of the log density: forward, or backwards along a tape.
 
+use super::along::Along;
 use super::any_program::AnyProgram;
 use super::density::{Density, Weights};
 use super::number::Number;
@@ -48,7 +49,7 @@ fn reverse(
     gradient: &mut [f64],
 ) -> Result<Option<Density>> {
     let recording = Recording::begin();
-    let source = Source::Line { z, first: 0 };
+    let source = Source::Line { z, along: Along::COORDINATES };
     let (density, prior, jacobian, likelihood) =
         run::<Reverse>(program, source, Some(z.len()), None)?;
     let total = weighted(weights, [prior, jacobian, likelihood]);
@@ -91,7 +92,8 @@ fn pass<K: Number + Forward>(
     first: usize,
     gradient: &mut [f64],
 ) -> Result<Density> {
-    let source = Source::Line { z, first };
+    let along = Along::COORDINATES.from(first);
+    let source = Source::Line { z, along };
     let (density, prior, jacobian, likelihood) =
         run::<K>(program, source, Some(z.len()), None)?;
     let total = weighted(weights, [prior, jacobian, likelihood]);

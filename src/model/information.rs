@@ -31,15 +31,14 @@ impl Information {
         }
     }
 
-    /// Of some of the coordinates.
-    pub(super) fn of_some(self, coordinates: &[usize]) -> Self {
-        let Self { density, gradient, precision, jacobian } = self;
-        let rows = precision.select_rows(coordinates);
+    /// Along some directions, without the derivatives of single data.
+    pub(super) fn along(&self, directions: &DMatrix<f64>) -> Self {
+        let precision = directions * &self.precision * directions.transpose();
         Self {
-            density,
-            gradient: gradient.select_rows(coordinates),
-            precision: rows.select_columns(coordinates),
-            jacobian: jacobian.of_some(coordinates),
+            density: self.density,
+            gradient: directions * &self.gradient,
+            precision,
+            jacobian: Jacobian::new(directions.nrows(), 0),
         }
     }
 

@@ -16,8 +16,8 @@ pub(crate) struct Jacobian {
     blocks: Vec<[f64; BLOCK]>,
     /// How many blocks a column has.
     width: usize,
-    /// Which row of the blocks each coordinate has.
-    rows: Vec<usize>,
+    /// How many coordinates there are.
+    dimension: usize,
 }
 
 impl Jacobian {
@@ -25,7 +25,7 @@ impl Jacobian {
     pub(super) fn new(dimension: usize, room: usize) -> Self {
         let width = dimension.div_ceil(BLOCK);
         let blocks = Vec::with_capacity(width * room);
-        Self { blocks, width, rows: (0..dimension).collect() }
+        Self { blocks, width, dimension }
     }
 
     /// Writes the derivatives that a number carries into a column, from the
@@ -62,8 +62,7 @@ impl Jacobian {
 
     /// The derivatives along one coordinate.
     pub(crate) fn row(&self, coordinate: usize) -> DVector<f64> {
-        let row = self.rows[coordinate];
-        let (block, place) = (row / BLOCK, row % BLOCK);
+        let (block, place) = (coordinate / BLOCK, coordinate % BLOCK);
         let columns = self.blocks.chunks_exact(self.width.max(1));
         let numbers = columns.map(|column| column[block][place]);
         DVector::from_iterator(self.count(), numbers)
@@ -79,18 +78,10 @@ impl Jacobian {
         DVector::from_iterator(coordinates.len(), coordinates.iter().map(of))
     }
 
-    /// With some of the coordinates.
-    pub(super) fn of_some(mut self, coordinates: &[usize]) -> Self {
-        self.rows = coordinates.iter().map(|&i| self.rows[i]).collect();
-        self
-    }
-
     /// The products of all rows with each other, block by block: far fewer
-    /// rows than columns are too few for a general product. Not of some of the
-    /// coordinates alone.
+    /// rows than columns are too few for a general product.
     pub(super) fn squared(&self) -> DMatrix<f64> {
-        let n = self.rows.len();
-        debug_assert!(self.rows.iter().copied().eq(0..n));
+        let n = self.dimension;
         let mut product = DMatrix::zeros(n, n);
         for top in 0..self.width {
             for left in 0..=top {
@@ -165,8 +156,6 @@ mod tests {
             let times = jacobian.times(&[last, 0], &numbers);
             let expected = dense.select_rows(&[last, 0]) * &numbers;
             assert!((times - expected).amax() < 30.0 * 1e-15);
-            let one = jacobian.of_some(&[last, 0]).of_some(&[0]);
-            assert_eq!(one.row(0), dense.row(last).transpose());
         }
     }
 }

@@ -8,6 +8,7 @@
 
 mod added;
 mod alone;
+mod along;
 mod amount;
 mod any_program;
 mod assembled;
@@ -36,6 +37,7 @@ mod together;
 mod with;
 
 pub(crate) use alone::{Alone, Common};
+pub(crate) use along::coordinates;
 pub use any_program::{AnyProgram, RunOf};
 pub use assembled::Assembled;
 pub use blocks::declared_blocks;

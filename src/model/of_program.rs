@@ -1,6 +1,9 @@
 //! Every program is a model: the one run, asked in different ways; and one of
 //! any type, which is a program again.
 
+use nalgebra::DMatrix;
+
+use super::along::Along;
 use super::any_program::{AnyProgram, RunOf};
 use super::density::{Density, Weights};
 use super::face::{Model, Point};
@@ -21,7 +24,10 @@ impl<P: Program> Model for P {
         listener: Option<&mut dyn Listener<Plain>>,
     ) -> Result<Density> {
         let (source, expected) = match point {
-            Point::Line(z) => (Source::Line { z, first: 0 }, Some(z.len())),
+            Point::Line(z) => {
+                let along = Along::COORDINATES;
+                (Source::Line { z, along }, Some(z.len()))
+            }
             Point::Natural(x) => (Source::Natural { x }, Some(x.len())),
             Point::Prior(rng) => (Source::Prior { rng }, None),
             Point::Middle => (Source::Middle, None),
@@ -40,15 +46,15 @@ impl<P: Program> Model for P {
     }
 
     fn information(&self, z: &[f64]) -> Result<Information> {
-        fisher::information(self, z, 0..z.len())
+        fisher::information(self, z, Along::COORDINATES)
     }
 
     fn information_along(
         &self,
         z: &[f64],
-        coordinate: usize,
+        directions: &DMatrix<f64>,
     ) -> Result<Information> {
-        fisher::information(self, z, coordinate..coordinate + 1)
+        fisher::information(self, z, Along::rows(directions))
     }
 }
 

@@ -7,6 +7,8 @@
 use std::collections::HashSet;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
+use nalgebra::DMatrix;
+
 use super::density::{Density, Weights};
 use super::face::{Model, Point};
 use super::information::Information;
@@ -159,17 +161,17 @@ impl<'m> Posterior<'m> {
         Ok(information)
     }
 
-    /// The same along one coordinate alone, which costs little more than the
-    /// density.
+    /// The same along some directions: rows of a matrix that has a column for
+    /// each parameter. Few of them cost less than all parameters.
     ///
     /// # Errors
     /// As [`Posterior::density`].
     pub fn information_along(
         &self,
         z: &[f64],
-        coordinate: usize,
+        directions: &DMatrix<f64>,
     ) -> Result<Information> {
-        let information = self.model.information_along(z, coordinate)?;
+        let information = self.model.information_along(z, directions)?;
         self.tally.count(GRADIENTS, &information.density);
         Ok(information)
     }

@@ -4,6 +4,7 @@
 //! where values come from (a point on the real line, a point as named, draws
 //! from the prior) and who listens.
 
+use super::along::Along;
 use super::data::Data;
 use super::label::Label;
 use super::listener::{Declaration, Listener};
@@ -21,9 +22,8 @@ use crate::seed::Rng;
 /// Where a run takes its parameters' values from.
 #[derive(Debug)]
 pub(super) enum Source<'r> {
-    /// Places on the real line; derivatives are taken along those from
-    /// `first` on, as many as the kind carries.
-    Line { z: &'r [f64], first: usize },
+    /// Places on the real line, and the directions of derivatives.
+    Line { z: &'r [f64], along: Along<'r> },
     /// Values as named; outside a support the run is rejected.
     Natural { x: &'r [f64] },
     /// Draws from the prior.
@@ -35,7 +35,7 @@ pub(super) enum Source<'r> {
 impl Source<'_> {
     fn reborrow(&mut self) -> Source<'_> {
         match self {
-            Self::Line { z, first } => Source::Line { z, first: *first },
+            Self::Line { z, along } => Source::Line { z, along: *along },
             Self::Natural { x } => Source::Natural { x },
             Self::Prior { rng } => Source::Prior { rng },
             Self::Middle => Source::Middle,
@@ -256,10 +256,8 @@ impl<'r, K: Kind> Run<'r, K> {
         let i = self.position;
         let beyond = || one_too_many(label, i);
         match &mut self.source {
-            Source::Line { z, first } => {
-                let direction = i.wrapping_sub(*first);
-                let z = *z.get(i).ok_or_else(beyond)?;
-                let z = Real::variable(z, direction);
+            Source::Line { z, along } => {
+                let z = along.number(*z.get(i).ok_or_else(beyond)?, i);
                 let (x, log_jacobian) = prior.support().from_line(z);
                 self.log_jacobian += log_jacobian;
                 Ok(x)

@@ -1,5 +1,8 @@
 //! A model of which some parameters are known.
 
+use nalgebra::DMatrix;
+
+use super::along::coordinates;
 use super::density::{Density, Weights};
 use super::face::{Model, Point};
 use super::information::Information;
@@ -23,6 +26,8 @@ pub struct Slice<'a> {
     natural: Vec<f64>,
     /// Which are unknown, in ascending order.
     unknown: Vec<usize>,
+    /// The unknown ones as directions of all.
+    directions: DMatrix<f64>,
     /// ln of the prior density of the known ones, and of their Jacobian.
     known: (f64, f64),
 }
@@ -55,6 +60,7 @@ impl<'a> Slice<'a> {
             natural: posterior.natural(line)?,
             line: line.to_vec(),
             unknown: unknown.to_vec(),
+            directions: coordinates(unknown, line.len()),
             known: known.sum,
         })
     }
@@ -143,7 +149,7 @@ impl Model for Slice<'_> {
 
     fn information(&self, z: &[f64]) -> Result<Information> {
         let line = self.filled(&self.line, z);
-        let mut own = self.model.information(&line)?.of_some(&self.unknown);
+        let mut own = self.model.information_along(&line, &self.directions)?;
         own.density = self.given(own.density, true);
         Ok(own)
     }
@@ -266,7 +272,8 @@ mod tests {
         assert_eq!(found.density.log_likelihood, all.density.log_likelihood);
         assert_eq!(found.gradient[0], all.gradient[1]);
         assert_eq!(found.precision[(0, 0)], all.precision[(1, 1)]);
-        let along = own.information_along(&z, 0).unwrap();
+        let along =
+            own.information_along(&z, &DMatrix::identity(1, 1)).unwrap();
         assert_eq!(along.precision, found.precision);
         let mut gradient = [0.0];
         own.gradient(&z, Weights::LINE, &mut gradient).unwrap();

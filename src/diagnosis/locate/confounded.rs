@@ -35,14 +35,14 @@ pub(super) fn confounded(
     tangent: &Tangent,
     extent: &Extent,
 ) -> Option<DMatrix<f64>> {
-    let cells = tangent.force.len() as f64;
+    let cells = tangent.of_waves.nrows() as f64;
     Some(imitations(tangent, extent)?.qr().q() * cells.sqrt())
 }
 
 /// A force for each direction of the parameters that one imitates; `None`
 /// where there is no such direction.
 fn imitations(tangent: &Tangent, extent: &Extent) -> Option<DMatrix<f64>> {
-    let Tangent { of_force, across, of_own, .. } = tangent;
+    let Tangent { of_waves: of_force, across, of_own, .. } = tangent;
     let smooth = Process::of_length(extent.run / LENGTHS);
     let waves = smooth.factor(extent, of_force.nrows());
     let waves = waves.insert_column(0, 1.0);

@@ -4,7 +4,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::process::Process;
-use super::tangent::{Cells, Tangent, Waves};
+use super::tangent::{Basis, Cells, Tangent, Waves, half_log_det};
 use crate::error::{Error, Result};
 use crate::infer::{Climb, Landscape, Mixture, Slope};
 use crate::mechanism::Extent;
@@ -58,7 +58,7 @@ const FURTHER: f64 = 2.0;
 #[derive(Debug, Clone)]
 pub(in crate::diagnosis) struct Look {
     pub(super) process: Process,
-    /// The model there.
+    /// The model there, along the cells.
     pub(super) tangent: Tangent,
     /// About minus the Hessian of the own parameters' density.
     precision: DMatrix<f64>,
@@ -69,6 +69,18 @@ pub(in crate::diagnosis) struct Look {
 }
 
 impl Look {
+    /// One with the slope of the density and the model at a peak; `None`
+    /// where that has no width.
+    fn of(process: Process, slope: Slope, tangent: Tangent) -> Option<Self> {
+        let half = half_log_det(&slope.precision.clone().cholesky()?);
+        let n = slope.gradient.len() as f64;
+        let height = slope.height + process.log_prior();
+        let log_evidence =
+            height - half + 0.5 * n * std::f64::consts::TAU.ln();
+        let precision = slope.precision;
+        Some(Self { process, tangent, precision, height, log_evidence })
+    }
+
     /// About how unlikely a place is to be under this peak.
     pub(super) fn distance(
         &self,
@@ -103,14 +115,17 @@ impl<'a, 'm> Sought<'a, 'm> {
     }
 
     /// What makes a process's force of standard normal waves.
-    pub(super) fn factor(&self, process: &Process) -> DMatrix<f64> {
+    pub(super) fn basis(&self, process: &Process) -> Basis {
         let factor = process.factor(self.extent, self.cells.count);
-        let Some(besides) = self.besides else { return factor };
+        let own = self.cells.own();
+        let Some(besides) = self.besides else {
+            return Basis::new(factor, own);
+        };
         let scaled = besides * process.size();
         let waves = factor.ncols();
         let mut all = factor.resize_horizontally(waves + scaled.ncols(), 0.0);
         all.columns_mut(waves, scaled.ncols()).copy_from(&scaled);
-        all
+        Basis::new(all, own)
     }
 
     /// The looks at the processes of others, from where these are.
@@ -134,8 +149,9 @@ impl<'a, 'm> Sought<'a, 'm> {
     /// A model that fails, or one that has no density near these.
     pub(super) fn looks(&self, own: &[f64], grid: Grid) -> Result<Vec<Look>> {
         let own = DVector::from_column_slice(own);
-        let still = DVector::zeros(self.cells.count);
-        let none = self.cells.tangent(still, own)?;
+        let count = self.cells.count;
+        let cells = Basis::cells(count, self.cells.own());
+        let none = self.cells.tangent(&cells, &DVector::zeros(count), own)?;
         let Some(none) = none else { return Err(no_mode()) };
         let Grid { lengths, sizes, beyond } = grid;
         let mut found = self.columns(lengths, sizes, &none)?;
@@ -191,26 +207,27 @@ impl<'a, 'm> Sought<'a, 'm> {
     /// The look at a process that a tangent leads to; `None` where the start
     /// has no density.
     fn look(&self, process: Process, from: &Tangent) -> Result<Option<Look>> {
-        let factor = self.factor(&process);
-        let least = f64::NEG_INFINITY;
-        let ridge = Ridge { cells: self.cells, factor: &factor, least };
+        let ridge = Ridge {
+            cells: self.cells,
+            basis: self.basis(&process),
+            least: f64::NEG_INFINITY,
+        };
         let own = from.own.clone();
         let still = DVector::zeros(own.len());
-        let Some((slope, tangent)) = ridge.slope(&own, &still, from)? else {
+        let from = from.along(&ridge.basis);
+        let Some((slope, tangent)) = ridge.slope(&own, &still, &from)? else {
             return Ok(None);
         };
         let found =
             CLIMB.ascend(&ridge, (own, slope, tangent), |_, _| false)?;
-        Ok(found.and_then(|(_, slope, tangent)| {
-            let half = slope.precision.clone().cholesky()?;
-            let half: f64 = half.l_dirty().diagonal().map(f64::ln).sum();
-            let n = slope.gradient.len() as f64;
-            let height = slope.height + process.log_prior();
-            let log_evidence =
-                height - half + 0.5 * n * std::f64::consts::TAU.ln();
-            let precision = slope.precision;
-            Some(Look { process, tangent, precision, height, log_evidence })
-        }))
+        let Some((own, slope, tangent)) = found else { return Ok(None) };
+        let Some(waves) = tangent.waves(&own) else { return Ok(None) };
+        let cells = Basis::cells(self.cells.count, self.cells.own());
+        let force = &ridge.basis.factor * waves.mean;
+        let Some(tangent) = self.cells.tangent(&cells, &force, own)? else {
+            return Ok(None);
+        };
+        Ok(Look::of(process, slope, tangent))
     }
 }
 
@@ -238,13 +255,13 @@ fn most<'l>(looks: impl Iterator<Item = &'l Look>) -> f64 {
 /// The density of the own parameters under one process, the force integrated.
 pub(super) struct Ridge<'a, 'm> {
     pub(super) cells: Cells<'a, 'm>,
-    pub(super) factor: &'a DMatrix<f64>,
+    pub(super) basis: Basis,
     /// ln of a density below which nothing counts.
     pub(super) least: f64,
 }
 
 impl Ridge<'_, '_> {
-    /// A tangent at the force that is about best at some own parameters, from
+    /// A tangent at the waves that are about best at some own parameters, from
     /// one nearby, and the best waves by it; `None` where there is no density.
     ///
     /// Climbs make a tangent at each step, and draws about the best are weighed,
@@ -256,19 +273,19 @@ impl Ridge<'_, '_> {
         own: &DVector<f64>,
         from: &Tangent,
     ) -> Result<Option<(Tangent, Waves)>> {
-        let Some(mut waves) = from.waves(self.factor, own) else {
+        let Some(Waves { mut mean, .. }) = from.waves(own) else {
             return Ok(None);
         };
         let mut found: Option<(Tangent, Waves)> = None;
         for _ in 0..TANGENTS {
-            let force = self.factor * &waves.mean;
-            let tangent = self.cells.tangent(force, own.clone())?;
+            let tangent =
+                self.cells.tangent(&self.basis, &mean, own.clone())?;
             let Some(tangent) = tangent else { break };
-            let Some(next) = tangent.waves(self.factor, own) else { break };
-            let gain = next.gain_from(&waves.mean);
-            let most = || tangent.height(self.factor, &next) + FURTHER * gain;
+            let Some(next) = tangent.waves(own) else { break };
+            let gain = next.gain_from(&mean);
+            let most = || tangent.height(&next) + FURTHER * gain;
             let ends = gain < NEARBY || most() < self.least;
-            waves.mean.copy_from(&next.mean);
+            mean.copy_from(&next.mean);
             found = Some((tangent, next));
             if ends {
                 break;
@@ -291,9 +308,9 @@ impl Landscape for Ridge<'_, '_> {
         _step: &DVector<f64>,
         from: &Tangent,
     ) -> Result<Option<(Slope, Tangent)>> {
-        Ok(self.best(at, from)?.map(|(tangent, waves)| {
-            (tangent.marginal(self.factor, &waves), tangent)
-        }))
+        Ok(self
+            .best(at, from)?
+            .map(|(tangent, waves)| (tangent.marginal(&waves), tangent)))
     }
 }
 

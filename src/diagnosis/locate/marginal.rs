@@ -1,12 +1,12 @@
 //! What a free-form force holds at a given process and given parameters of
 //! the model: the force integrated by importance sampling.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
 
 use super::look::{Look, Ridge, Sought};
 use super::process::Process;
-use super::tangent::{Tangent, Waves, half_log_det, log_normal};
+use super::tangent::{Basis, Tangent, Waves, half_log_det, log_normal};
 use crate::draws::log_sum_exp;
 use crate::error::{Error, Result};
 use crate::infer::nested::{Held, Outer};
@@ -51,13 +51,15 @@ impl Outer for Marginal<'_, '_> {
     fn held(&self, z: &[f64], seed: Seed) -> Result<Held<Self::Rest>> {
         let (process, own) = Process::parted(z);
         let own = DVector::from_column_slice(own);
-        let factor = self.sought.factor(&process);
-        let least = self.least - process.log_prior();
-        let ridge = Ridge { cells: self.sought.cells, factor: &factor, least };
-        let Some(from) = self.start(&process, &own, &factor) else {
+        let ridge = Ridge {
+            cells: self.sought.cells,
+            basis: self.sought.basis(&process),
+            least: self.least - process.log_prior(),
+        };
+        let Some(from) = self.start(&process, &own, &ridge.basis) else {
             return Ok(Held::nothing());
         };
-        let Some(mut best) = ridge.best(&own, from)? else {
+        let Some(mut best) = ridge.best(&own, &from)? else {
             return Ok(Held::nothing());
         };
         if self.shared {
@@ -65,7 +67,7 @@ impl Outer for Marginal<'_, '_> {
             best = outdone(&ridge, best, &own, &mut rng)?;
         }
         let mut rng = seed.child(1).rng();
-        let (forces, logs) = drawn(&ridge, &best.1, &own, &mut rng)?;
+        let (waves, logs) = drawn(&ridge, &best.1, &own, &mut rng)?;
         let total = log_sum_exp(logs.iter().copied());
         if total == f64::NEG_INFINITY {
             return Ok(Held::nothing());
@@ -73,7 +75,8 @@ impl Outer for Marginal<'_, '_> {
         let weights: Vec<f64> =
             logs.iter().map(|log| (log - total).exp()).collect();
         let chosen = systematic(&weights, KEPT, &mut rng).into_iter();
-        let rest = chosen.map(|i| forces[i].as_slice().to_vec()).collect();
+        let force = |i: usize| &ridge.basis.factor * &waves[i];
+        let rest = chosen.map(|i| force(i).as_slice().to_vec()).collect();
         let log = total - (FORCES as f64).ln() + process.log_prior();
         Ok(Held { log, rest: Some(rest) })
     }
@@ -97,21 +100,20 @@ impl<'a, 'm> Marginal<'a, 'm> {
         &self,
         process: &Process,
         own: &DVector<f64>,
-        factor: &DMatrix<f64>,
-    ) -> Option<&Tangent> {
+        basis: &Basis,
+    ) -> Option<Tangent> {
         let off = |look: &Look| look.distance(process, own);
         let mut near: Vec<(f64, &Look)> =
             self.looks.iter().map(|look| (off(look), look)).collect();
         near.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let promise = |look: &Look| {
-            let waves = look.tangent.waves(factor, own);
-            waves.map_or(f64::NEG_INFINITY, |waves| {
-                look.tangent.height(factor, &waves)
-            })
-        };
-        let nearest = near.into_iter().take(NEAREST).map(|(_, look)| look);
-        let best = nearest.map(|look| (promise(look), &look.tangent));
-        best.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, tangent)| tangent)
+        let nearest = near.into_iter().take(NEAREST);
+        let promising = nearest.map(|(_, look)| {
+            let tangent = look.tangent.along(basis);
+            let height = tangent.waves(own).map(|w| tangent.height(&w));
+            (height.unwrap_or(f64::NEG_INFINITY), tangent)
+        });
+        let best = promising.max_by(|a, b| a.0.total_cmp(&b.0));
+        best.map(|(_, tangent)| tangent)
     }
 }
 
@@ -122,20 +124,18 @@ fn outdone(
     own: &DVector<f64>,
     rng: &mut Rng,
 ) -> Result<(Tangent, Waves)> {
-    let height = |(tangent, waves): &(Tangent, Waves)| {
-        tangent.height(ridge.factor, waves)
-    };
+    let height = |(tangent, waves): &(Tangent, Waves)| tangent.height(waves);
     for _ in 0..AGAIN {
-        let (forces, logs) = drawn(ridge, &best.1, own, rng)?;
-        let top = logs.iter().zip(forces);
+        let (waves, logs) = drawn(ridge, &best.1, own, rng)?;
+        let top = logs.iter().zip(waves);
         let top = top.max_by(|a, b| a.0.total_cmp(b.0));
         let surprise = height(&best) + SURPRISE;
-        let Some((_, force)) = top.filter(|(log, _)| **log > surprise) else {
+        let Some((_, waves)) = top.filter(|(log, _)| **log > surprise) else {
             break;
         };
-        let Some(tangent) = ridge.cells.tangent(force, own.clone())? else {
-            break;
-        };
+        let tangent =
+            ridge.cells.tangent(&ridge.basis, &waves, own.clone())?;
+        let Some(tangent) = tangent else { break };
         match ridge.best(own, &tangent)? {
             Some(other) if height(&other) > height(&best) => best = other,
             _ => break,
@@ -144,7 +144,7 @@ fn outdone(
     Ok(best)
 }
 
-/// Forces drawn about the best, each with ln of its importance weight.
+/// Waves drawn about the best, each with ln of its importance weight.
 fn drawn(
     ridge: &Ridge<'_, '_>,
     waves: &Waves,
@@ -160,10 +160,10 @@ fn drawn(
             continue;
         };
         for waves in [&waves.mean + &off, &waves.mean - &off] {
-            let force = ridge.factor * &waves;
+            let force = &ridge.basis.factor * &waves;
             let log = ridge.cells.log_density(&force, own.as_slice())?;
             logs.push(log + log_normal(&waves) - base);
-            all.push(force);
+            all.push(waves);
         }
     }
     Ok((all, logs))

@@ -1,18 +1,49 @@
 //! A model with a free-form force, to second order about a force and the
 //! model's own parameters; and what that says of the force under any process.
 //!
+//! A process's force is L w, of waves w that are standard normal beforehand.
 //! The square of the speed is linear in a force over distance, so that given
-//! the process and the model's parameters the force is nearly normal. The
-//! tangent is that of the cells themselves, each standard normal beforehand;
-//! that prior is taken out of it again. Under a process with force = L w, w
-//! standard normal, the waves w then have the precision M = 1 + L' A L, with A
-//! the information of the data, and one tangent serves all processes.
+//! the process and the model's parameters the waves are nearly normal, with
+//! the precision M = 1 + L' A L, A being the information of the data. A
+//! tangent of the cells themselves, L = 1, serves all processes; one along
+//! the waves of a process serves it alone, and takes derivatives along as few
+//! directions as there are waves.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::error::Result;
 use crate::infer::Slope;
-use crate::model::{Information, Point, Posterior};
+use crate::model::{Point, Posterior};
+
+/// What makes a force of waves: force = L w.
+#[derive(Debug, Clone)]
+pub(super) struct Basis {
+    /// L: a row for each cell, a column for each wave.
+    pub(super) factor: DMatrix<f64>,
+    /// L'L: the precision that independent cells, standard normal beforehand,
+    /// give the waves.
+    squared: DMatrix<f64>,
+    /// The waves and the model's own parameters as directions of the cells and
+    /// these.
+    directions: DMatrix<f64>,
+}
+
+impl Basis {
+    /// Beside so many own parameters of the model.
+    pub(super) fn new(factor: DMatrix<f64>, own: usize) -> Self {
+        let (cells, waves) = factor.shape();
+        let mut directions = DMatrix::zeros(waves + own, cells + own);
+        directions.view_mut((0, 0), (waves, cells)).tr_copy_from(&factor);
+        directions.view_mut((waves, cells), (own, own)).fill_with_identity();
+        let squared = factor.tr_mul(&factor);
+        Self { factor, squared, directions }
+    }
+
+    /// The cells themselves.
+    pub(super) fn cells(cells: usize, own: usize) -> Self {
+        Self::new(DMatrix::identity(cells, cells), own)
+    }
+}
 
 /// A model with a force of so many independent cells, which come first.
 #[derive(Clone, Copy)]
@@ -22,6 +53,11 @@ pub(super) struct Cells<'a, 'm> {
 }
 
 impl Cells<'_, '_> {
+    /// How many parameters the model has of its own.
+    pub(super) fn own(&self) -> usize {
+        self.posterior.dimension() - self.count
+    }
+
     /// ln p(own, data | force).
     pub(super) fn log_density(
         &self,
@@ -33,18 +69,37 @@ impl Cells<'_, '_> {
         Ok(density.on_line() - log_normal(force))
     }
 
-    /// The tangent at a force and own parameters; `None` where there is no
-    /// density.
+    /// The tangent along waves, at some of these and own parameters; `None`
+    /// where there is no density.
     pub(super) fn tangent(
         &self,
-        force: DVector<f64>,
+        basis: &Basis,
+        waves: &DVector<f64>,
         own: DVector<f64>,
     ) -> Result<Option<Tangent>> {
+        let Basis { factor, squared, directions } = basis;
+        let (force, n, m) = (factor * waves, own.len(), waves.len());
         let line = [force.as_slice(), own.as_slice()].concat();
-        let about = self.posterior.information(&line)?;
-        let usable = about.density.on_line().is_finite()
-            && about.gradient.iter().all(|g| g.is_finite());
-        Ok(usable.then(|| Tangent::new(force, own, &about)))
+        let about = self.posterior.information_along(&line, directions)?;
+        let height = about.density.on_line() - log_normal(&force);
+        let gradient = about.gradient;
+        if !height.is_finite() || !gradient.iter().all(|g| g.is_finite()) {
+            return Ok(None);
+        }
+        let view = |at, size| about.precision.view(at, size).into_owned();
+        // Without what the prior of the cells says.
+        let of_waves = view((0, 0), (m, m)) - squared;
+        let across = view((0, m), (m, n));
+        let bent = &of_waves * waves;
+        let pull = gradient.rows(0, m) + squared * waves;
+        Ok(Some(Tangent {
+            height: height - pull.dot(waves) - 0.5 * bent.dot(waves),
+            pulls: (pull + bent, gradient.rows(m, n) + across.tr_mul(waves)),
+            of_waves,
+            across,
+            of_own: view((m, m), (n, n)),
+            own,
+        }))
     }
 }
 
@@ -59,91 +114,65 @@ pub(super) fn half_log_det(precision: &Cholesky<f64, Dyn>) -> f64 {
     precision.l_dirty().diagonal().iter().map(|d| d.ln()).sum()
 }
 
-/// ln p(own, data | force) to second order.
+/// ln p(own, data | waves) to second order, as of no waves and the own
+/// parameters that it was made at.
 #[derive(Debug, Clone)]
 pub(super) struct Tangent {
-    pub(super) force: DVector<f64>,
     pub(super) own: DVector<f64>,
     height: f64,
-    /// Along the force, and along the own parameters.
+    /// Along the waves, and along the own parameters.
     pulls: (DVector<f64>, DVector<f64>),
     /// A, and how both go together, and of the own parameters.
-    pub(super) of_force: DMatrix<f64>,
+    pub(super) of_waves: DMatrix<f64>,
     pub(super) across: DMatrix<f64>,
     pub(super) of_own: DMatrix<f64>,
 }
 
 impl Tangent {
-    fn new(
-        force: DVector<f64>,
-        own: DVector<f64>,
-        about: &Information,
-    ) -> Self {
-        let (cells, n) = (force.len(), own.len());
-        let view = |at, size| about.precision.view(at, size).into_owned();
-        let one = DMatrix::identity(cells, cells);
+    /// One of the cells, along a process's waves.
+    pub(super) fn along(&self, Basis { factor, .. }: &Basis) -> Self {
         Self {
-            height: about.density.on_line() - log_normal(&force),
-            pulls: (
-                about.gradient.rows(0, cells) + &force,
-                about.gradient.rows(cells, n).into_owned(),
-            ),
-            of_force: view((0, 0), (cells, cells)) - one,
-            across: view((0, cells), (cells, n)),
-            of_own: view((cells, cells), (n, n)),
-            force,
-            own,
+            own: self.own.clone(),
+            height: self.height,
+            pulls: (factor.tr_mul(&self.pulls.0), self.pulls.1.clone()),
+            of_waves: factor.tr_mul(&(&self.of_waves * factor)),
+            across: factor.tr_mul(&self.across),
+            of_own: self.of_own.clone(),
         }
     }
 
-    /// The waves of a process that are best at some own parameters, as far as
-    /// the tangent holds; `None` where they have no width.
-    pub(super) fn waves(
-        &self,
-        factor: &DMatrix<f64>,
-        own: &DVector<f64>,
-    ) -> Option<Waves> {
-        let n = factor.ncols();
-        let precision = DMatrix::identity(n, n)
-            + factor.tr_mul(&(&self.of_force * factor));
+    /// The waves that are best at some own parameters, as far as the tangent
+    /// holds; `None` where they have no width.
+    pub(super) fn waves(&self, own: &DVector<f64>) -> Option<Waves> {
+        let mut precision = self.of_waves.clone();
+        for i in 0..precision.nrows() {
+            precision[(i, i)] += 1.0;
+        }
         let precision = precision.cholesky()?;
-        let pull = &self.pulls.0 + &self.of_force * &self.force
-            - &self.across * (own - &self.own);
-        let mean = precision.solve(&factor.tr_mul(&pull));
+        let pull = &self.pulls.0 - &self.across * (own - &self.own);
+        let mean = precision.solve(&pull);
         let finite = mean.iter().all(|x| x.is_finite());
         finite.then_some(Waves { mean, precision })
     }
 
     /// ln p(own, data) at the own parameters that the waves are best at, the
     /// force integrated.
-    pub(super) fn height(&self, factor: &DMatrix<f64>, waves: &Waves) -> f64 {
-        self.height_off(&(factor * &waves.mean - &self.force), waves)
-    }
-
-    /// The same, the best force being so far off the tangent's.
-    fn height_off(&self, off: &DVector<f64>, waves: &Waves) -> f64 {
-        let bend = off.dot(&(&self.of_force * off));
-        self.height + self.pulls.0.dot(off)
-            - 0.5 * bend
-            - 0.5 * waves.mean.norm_squared()
-            - half_log_det(&waves.precision)
+    pub(super) fn height(&self, Waves { mean, precision }: &Waves) -> f64 {
+        let bent = mean.dot(&(&self.of_waves * mean)) + mean.norm_squared();
+        let half = half_log_det(precision);
+        self.height + self.pulls.0.dot(mean) - 0.5 * bent - half
     }
 
     /// ln p(own, data), the force integrated, about the tangent's own
     /// parameters, to second order. Its gradient is that along the ridge of
     /// the best forces: how these narrow is left to the draws.
-    pub(super) fn marginal(
-        &self,
-        factor: &DMatrix<f64>,
-        waves: &Waves,
-    ) -> Slope {
-        let off = factor * &waves.mean - &self.force;
-        let height = self.height_off(&off, waves);
-        let across = factor.tr_mul(&self.across);
-        let follows = waves.precision.solve(&across);
-        let gradient = &self.pulls.1 - self.across.tr_mul(&off);
-        let precision = &self.of_own - across.tr_mul(&follows);
-        Slope { height, gradient, precision }
+    pub(super) fn marginal(&self, waves: &Waves) -> Slope {
+        let follows = waves.precision.solve(&self.across);
+        Slope {
+            height: self.height(waves),
+            gradient: &self.pulls.1 - self.across.tr_mul(&waves.mean),
+            precision: &self.of_own - self.across.tr_mul(&follows),
+        }
     }
 }
 
