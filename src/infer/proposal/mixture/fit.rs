@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
 
-use super::{Component, FREEDOM, Mixture, Shares, moments};
+use super::{Component, FREEDOM, Mixture, Shares, inflated, moments};
 use crate::seed::Rng;
 
 /// The most rounds of a fit.
@@ -40,7 +40,7 @@ impl Mixture {
                 break;
             }
         }
-        best.and_then(|(_, fitted)| fitted.inflated())
+        best.and_then(|(_, fitted)| inflated(&fitted.components))
     }
 
     /// Whether two more components than it has, up to `count`, did not help.
@@ -78,38 +78,39 @@ fn expectation_maximisation(
     let whole = Component::new(1.0, mean, &covariance)?;
     let centres = far_apart(points, weights, &whole, count, rng);
     let narrow = &covariance / (count as f64).powi(2);
-    let mut components: Vec<Component> = centres
+    let components: Vec<Component> = centres
         .into_iter()
         .map(|m| Component::new(1.0 / count as f64, m, &narrow))
         .collect::<Option<_>>()?;
+    let mut mixture = Mixture::from(components);
     let mut fit = f64::NEG_INFINITY;
     for _ in 0..ROUNDS {
-        let (next, before) = maximise(points, weights, &components)?;
-        components = next;
+        let (next, before) = maximise(points, weights, &mixture)?;
+        mixture = next;
         if before - fit < ENOUGH {
             break;
         }
         fit = before;
     }
-    Some(Mixture { components })
+    Some(mixture)
 }
 
 /// One round: responsibilities, then weighted moments of each component. The
-/// mean log density before it comes with the new components.
+/// mean log density before it comes with the new mixture.
 fn maximise(
     points: &[DVector<f64>],
     weights: &[f64],
-    components: &[Component],
-) -> Option<(Vec<Component>, f64)> {
-    let n = points.first()?.len();
-    let mut totals = vec![0.0; components.len()];
+    mixture: &Mixture,
+) -> Option<(Mixture, f64)> {
+    let (n, count) = (points.first()?.len(), mixture.components());
+    let mut totals = vec![0.0; count];
     let mut masses = totals.clone();
-    let mut means = vec![DVector::zeros(n); components.len()];
-    let mut squares = vec![DMatrix::zeros(n, n); components.len()];
+    let mut means = vec![DVector::zeros(n); count];
+    let mut squares = vec![DMatrix::zeros(n, n); count];
     let (mut fit, mut shares) = (0.0, Shares::default());
     for (z, w) in points.iter().zip(weights).filter(|(_, w)| **w > 0.0) {
-        fit += w * shares.at(components, z.as_slice());
-        for k in 0..components.len() {
+        fit += w * shares.at(mixture, z.as_slice());
+        for k in 0..count {
             let share = w * shares.of[k];
             // The t's latent precision, given the point.
             let precision =
@@ -120,7 +121,7 @@ fn maximise(
             squares[k].ger(share * precision, z, z, 1.0);
         }
     }
-    let maximised = (0..components.len())
+    let maximised: Vec<Component> = (0..count)
         .map(|k| {
             if totals[k] < 1e-3 {
                 return None;
@@ -131,7 +132,7 @@ fn maximise(
             Component::new(totals[k], mean, &(second - outer))
         })
         .collect::<Option<_>>()?;
-    Some((maximised, fit))
+    Some((Mixture::from(maximised), fit))
 }
 
 /// Centres drawn with a probability that grows with the distance to those

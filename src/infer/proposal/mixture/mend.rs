@@ -44,7 +44,7 @@ impl Mixture {
             for (log, z) in logs.iter_mut().zip(draws) {
                 *log = added.beside(*log, z);
             }
-            mended.add(added);
+            mended = mended.with(added);
         }
         if mended.components() == self.components() {
             return None;
@@ -57,11 +57,12 @@ impl Mixture {
         Some(mended)
     }
 
-    /// Adds a component; the others make room for its weight.
-    fn add(&mut self, component: Component) {
+    /// With a component more; the others make room for its weight.
+    fn with(mut self, component: Component) -> Self {
         let left = 1.0 - component.weight;
         self.components.iter_mut().for_each(|c| c.weight *= left);
         self.components.push(component);
+        Self::from(self.components)
     }
 }
 

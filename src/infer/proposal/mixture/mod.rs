@@ -5,6 +5,7 @@
 //! share of the prior's own draws so that no place is out of reach.
 
 mod fit;
+mod lanes;
 mod mend;
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -12,6 +13,7 @@ use rand::RngExt;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
 use statrs::function::gamma::ln_gamma;
 
+use self::lanes::Lanes;
 use crate::infer::log_sum_exp;
 use crate::seed::Rng;
 
@@ -34,6 +36,9 @@ pub(crate) fn student_constant(freedom: f64, dimension: f64) -> f64 {
 #[derive(Debug, Clone)]
 pub struct Mixture {
     components: Vec<Component>,
+    /// The same side by side: densities are most of what importance sampling
+    /// costs beside those of the model.
+    lanes: Lanes,
 }
 
 #[derive(Debug, Clone)]
@@ -41,12 +46,10 @@ struct Component {
     weight: f64,
     mean: DVector<f64>,
     shape: Cholesky<f64, Dyn>,
-    /// The rows of the shape's inverse factor, one after the other, each with
-    /// what it makes of the mean: densities are most of what importance
-    /// sampling costs.
+    /// The rows of the shape's inverse factor, one after the other, each after
+    /// minus what it makes of the mean.
     whitening: Vec<f64>,
     log_constant: f64,
-    constant: f64,
 }
 
 impl Component {
@@ -67,36 +70,26 @@ impl Component {
         let whitening = (0..n)
             .flat_map(|i| {
                 let row = (0..=i).map(|j| inverse[(i, j)]);
-                row.chain([white[i]]).collect::<Vec<_>>()
+                std::iter::once(-white[i]).chain(row).collect::<Vec<_>>()
             })
             .collect();
-        let constant = log_constant.exp();
-        Some(Self { weight, mean, shape, whitening, log_constant, constant })
+        Some(Self { weight, mean, shape, whitening, log_constant })
     }
 
     /// The squared distance from the mean, in units of the shape.
     fn distance(&self, z: &[f64]) -> f64 {
         let (mut sum, mut rest) = (0.0, &self.whitening[..]);
         for i in 1..=z.len() {
-            let (row, after) = rest.split_at(i);
-            let white: f64 = row.iter().zip(z).map(|(r, z)| r * z).sum();
-            let (mean, after) = (after[0], &after[1..]);
-            sum += (white - mean) * (white - mean);
+            let (row, after) = rest.split_at(i + 1);
+            let white: f64 = row[1..].iter().zip(z).map(|(r, z)| r * z).sum();
+            sum += (white + row[0]).powi(2);
             rest = after;
         }
         sum
     }
 
-    /// The weighted density at such a squared distance:
-    /// (1 + d/nu)^(-(nu + n)/2), by whole powers and a root.
-    fn density_at(&self, distance: f64) -> f64 {
-        let power = FREEDOM as i32 + self.mean.len() as i32;
-        let falling = 1.0 / (1.0 + distance / FREEDOM);
-        let odd = if power % 2 == 1 { falling.sqrt() } else { 1.0 };
-        self.weight * self.constant * falling.powi(power / 2) * odd
-    }
-
-    /// Its log, also where the density is beyond what a number can hold.
+    /// ln of the weighted density at such a squared distance, also where that
+    /// is beyond what a number can hold.
     fn log_density_at(&self, distance: f64) -> f64 {
         let n = self.mean.len() as f64;
         self.weight.ln() + self.log_constant
@@ -115,20 +108,25 @@ struct Shares {
 
 impl Shares {
     /// Those at a place, with the log density there.
-    fn at(&mut self, components: &[Component], z: &[f64]) -> f64 {
+    fn at(&mut self, mixture: &Mixture, z: &[f64]) -> f64 {
         let Self { distances, of } = self;
         distances.clear();
-        distances.extend(components.iter().map(|c| c.distance(z)));
-        let each = || components.iter().zip(distances.iter());
         of.clear();
-        of.extend(each().map(|(c, d)| c.density_at(*d)));
+        for (eight, densities) in mixture.lanes.at(z) {
+            distances.extend(eight);
+            of.extend(densities);
+        }
+        let components = &mixture.components;
+        distances.truncate(components.len());
+        of.truncate(components.len());
         let total: f64 = of.iter().sum();
         if total > 0.0 && total.is_finite() {
             of.iter_mut().for_each(|share| *share /= total);
             return total.ln();
         }
+        let each = components.iter().zip(distances.iter());
         of.clear();
-        of.extend(each().map(|(c, d)| c.log_density_at(*d)));
+        of.extend(each.map(|(c, d)| c.log_density_at(*d)));
         let log = log_sum_exp(of.iter().copied());
         of.iter_mut().for_each(|share| *share = (*share - log).exp());
         log
@@ -158,8 +156,7 @@ impl Mixture {
             .collect();
         let total: f64 = components.iter().map(|c| c.weight).sum();
         components.iter_mut().for_each(|c| c.weight /= total);
-        let mixture = (!components.is_empty()).then_some(Self { components });
-        mixture.and_then(|mixture| mixture.inflated())
+        if components.is_empty() { None } else { inflated(&components) }
     }
 
     /// The same components, each weighing what weighted draws say it holds:
@@ -173,7 +170,7 @@ impl Mixture {
         let mut totals = vec![0.0; self.components.len()];
         let mut shares = Shares::default();
         for (z, weight) in draws {
-            shares.at(&self.components, z);
+            shares.at(self, z);
             for (sum, share) in totals.iter_mut().zip(&shares.of) {
                 *sum += weight * share;
             }
@@ -183,7 +180,7 @@ impl Mixture {
         for (component, total) in components.iter_mut().zip(totals) {
             component.weight = 0.5 * (component.weight + total);
         }
-        Self { components }
+        Self::from(components)
     }
 
     /// The components of both, either half of the weight.
@@ -191,17 +188,7 @@ impl Mixture {
     pub(in crate::infer) fn beside(mut self, other: Self) -> Self {
         self.components.extend(other.components);
         self.components.iter_mut().for_each(|c| c.weight *= 0.5);
-        self
-    }
-
-    fn inflated(&self) -> Option<Self> {
-        let wide = |c: &Component| {
-            let covariance = c.shape.l() * c.shape.l().transpose() * INFLATION;
-            Component::new(c.weight, c.mean.clone(), &covariance)
-        };
-        let components =
-            self.components.iter().map(wide).collect::<Option<_>>()?;
-        Some(Self { components })
+        Self::from(self.components)
     }
 
     /// The middle of the component with the most weight.
@@ -219,8 +206,8 @@ impl Mixture {
 
     /// The log density at a place on the real line.
     pub fn log_density(&self, z: &[f64]) -> f64 {
-        let at = |c: &Component| c.density_at(c.distance(z));
-        let total: f64 = self.components.iter().map(at).sum();
+        let each = self.lanes.at(z).flat_map(|(_, densities)| densities);
+        let total: f64 = each.sum();
         if total > 0.0 && total.is_finite() {
             return total.ln();
         }
@@ -248,6 +235,23 @@ impl Mixture {
         let step = chosen.shape.l() * normal * shrink;
         (&chosen.mean + step).as_slice().to_vec()
     }
+}
+
+impl From<Vec<Component>> for Mixture {
+    fn from(components: Vec<Component>) -> Self {
+        Self { lanes: Lanes::of(&components), components }
+    }
+}
+
+/// Components somewhat wider than they are.
+fn inflated(components: &[Component]) -> Option<Mixture> {
+    let wide = |c: &Component| {
+        let covariance = c.shape.l() * c.shape.l().transpose() * INFLATION;
+        Component::new(c.weight, c.mean.clone(), &covariance)
+    };
+    let components: Vec<_> =
+        components.iter().map(wide).collect::<Option<_>>()?;
+    Some(Mixture::from(components))
 }
 
 fn moments(
@@ -325,8 +329,9 @@ mod tests {
         let z = |mixture: &Mixture| (above_zero(mixture) - share) / se;
         assert!(z(&mixture).abs() < 4.0, "{}", z(&mixture));
         // A factor of one component's density is seen.
-        let mut planted = two();
-        planted.components[1].constant *= 1.1;
+        let mut planted = two().components;
+        planted[1].log_constant += 1.1_f64.ln();
+        let planted = Mixture::from(planted);
         assert!(z(&planted) > 4.0, "{}", z(&planted));
     }
 }
