@@ -4,7 +4,8 @@
 use nalgebra::DVector;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
 
-use super::look::{Look, Ridge, Sought};
+use super::look::{Look, Sought};
+use super::peak::Ridge;
 use super::process::Process;
 use super::tangent::{Basis, Tangent, Waves, half_log_det, log_normal};
 use crate::draws::log_sum_exp;
@@ -89,7 +90,7 @@ impl<'a, 'm> Marginal<'a, 'm> {
         looks: Vec<Look>,
         shared: bool,
     ) -> Self {
-        let heights = looks.iter().map(|look| look.height);
+        let heights = looks.iter().map(|look| look.peak.height);
         let least = heights.fold(f64::NEG_INFINITY, f64::max) - DEEP;
         Self { sought, looks, least, shared }
     }
@@ -102,7 +103,7 @@ impl<'a, 'm> Marginal<'a, 'm> {
         own: &DVector<f64>,
         basis: &Basis,
     ) -> Option<Tangent> {
-        let off = |look: &Look| look.distance(process, own);
+        let off = |look: &Look| look.peak.distance(process, own);
         let mut near: Vec<(f64, &Look)> =
             self.looks.iter().map(|look| (off(look), look)).collect();
         near.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -14,6 +14,7 @@ mod free_form;
 mod look;
 mod marginal;
 mod open;
+mod peak;
 mod process;
 mod tangent;
 
@@ -136,13 +137,14 @@ pub(crate) fn outlook(
     let mut looks: Vec<Look> = Vec::new();
     for own in owns {
         let others = sought.looks(own, COARSE)?;
-        let log = |all: &[Look]| highest(all).map(|look| look.log_evidence);
+        let log =
+            |all: &[Look]| highest(all).map(|look| look.peak.log_evidence);
         if looks.is_empty() || log(&others) > log(&looks) {
             looks = others;
         }
     }
     let own = highest(&looks)
-        .map_or_else(Vec::new, |look| look.tangent.own.as_slice().to_vec());
+        .map_or_else(Vec::new, |look| look.peak.own.as_slice().to_vec());
     let mixture = proposal(&looks)?;
     let marginal = Marginal::new(sought, looks, program.events() > 1);
     let learned = learn(&marginal, mixture, GLANCE, seed.child(0))?;

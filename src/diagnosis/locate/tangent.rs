@@ -141,6 +141,18 @@ impl Tangent {
         }
     }
 
+    /// The same along waves that are so much larger.
+    pub(super) fn scaled(&self, by: f64) -> Self {
+        Self {
+            own: self.own.clone(),
+            height: self.height,
+            pulls: (&self.pulls.0 * by, self.pulls.1.clone()),
+            of_waves: &self.of_waves * (by * by),
+            across: &self.across * by,
+            of_own: self.of_own.clone(),
+        }
+    }
+
     /// The waves that are best at some own parameters, as far as the tangent
     /// holds; `None` where they have no width.
     pub(super) fn waves(&self, own: &DVector<f64>) -> Option<Waves> {

@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use rand_distr::{Distribution, StandardNormal};
 
 use super::process::Process;
+use super::tangent::{Basis, Waves, half_log_det};
 use super::*;
 use crate::diagnosis::evidence::fit::fit;
 use crate::draws::log_sum_exp;
@@ -198,6 +199,52 @@ fn what_is_left_open_is_what_linear_algebra_says() {
             assert!(near, "seed {seed:?}, {i}: {ratio}");
         }
     }
+}
+
+#[test]
+fn along_waves_a_tangent_is_that_of_the_cells() {
+    let program = pushed();
+    let extent = program.0.extent();
+    let form = FreeForm::cells(&extent, Axis::Time, CELLS);
+    let with = With::new(&program, &[&form]);
+    let posterior = Posterior::new(&with).unwrap();
+    let sought = Sought::of(&posterior, &extent, CELLS);
+    let (small, large) = (Process(0.3, -0.5), Process(0.3, 1.0));
+    let waves = sought.basis(&large);
+    let count = waves.factor.ncols();
+    assert!(count < CELLS);
+    let at = DVector::from_fn(count, |i, _| (0.4 * i as f64).sin());
+    let force = &waves.factor * &at;
+    let own = DVector::from_element(1, 0.2);
+    let of = |basis: &Basis, at: &DVector<f64>| {
+        sought.cells.tangent(basis, at, own.clone()).unwrap().unwrap()
+    };
+    let cells = of(&Basis::cells(CELLS, 1), &force);
+    let along = of(&waves, &at);
+    let by = large.size() / small.size();
+    let scaled = cells.along(&sought.basis(&small)).scaled(by);
+    // Elsewhere too, since they are the same to second order.
+    let elsewhere = DVector::from_element(1, -0.4);
+    let known = along.waves(&elsewhere).unwrap();
+    for other in [cells.along(&waves), scaled] {
+        let found = other.waves(&elsewhere).unwrap();
+        // Sums of a few hundred products, of some hundreds of ln at most.
+        assert!((found.mean - &known.mean).amax() < 1e-9);
+        let off = other.height(&known) - along.height(&known);
+        assert!(off.abs() < 1e-9, "{off}");
+        let found = other.marginal(&known);
+        let expected = along.marginal(&known);
+        assert!((found.gradient - expected.gradient).amax() < 1e-8);
+        assert!((found.precision - expected.precision).amax() < 1e-8);
+    }
+    // A height at no waves beside the best is the density there.
+    let still = DVector::zeros(count);
+    let none = of(&waves, &still);
+    let log = sought.cells.log_density(&DVector::zeros(CELLS), own.as_slice());
+    let half = half_log_det(&none.waves(&own).unwrap().precision);
+    let precision = none.waves(&own).unwrap().precision;
+    let none = none.height(&Waves { mean: still, precision });
+    assert!((none + half - log.unwrap()).abs() < 1e-9);
 }
 
 #[test]
