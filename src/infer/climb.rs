@@ -8,7 +8,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::error::Result;
-use crate::model::Posterior;
+use crate::model::{Point, Posterior};
 
 /// A log density about a place, to second order.
 #[derive(Debug, Clone)]
@@ -74,6 +74,12 @@ pub(crate) trait Landscape {
         step: &DVector<f64>,
         from: &Self::Trace,
     ) -> Result<Option<(Slope, Self::Trace)>>;
+
+    /// Whether a place can be higher than so much, where that is told at less
+    /// cost than its slope.
+    fn can_exceed(&self, _at: &DVector<f64>, _height: f64) -> Result<bool> {
+        Ok(true)
+    }
 }
 
 /// A posterior on the real line, some coordinates held.
@@ -109,6 +115,11 @@ impl Landscape for Held<'_, '_> {
         (): &(),
     ) -> Result<Option<(Slope, ())>> {
         Ok(self.slope_at(at.as_slice())?.map(|slope| (slope, ())))
+    }
+
+    fn can_exceed(&self, at: &DVector<f64>, height: f64) -> Result<bool> {
+        let density = self.posterior.density(Point::Line(at.as_slice()))?;
+        Ok(density.on_line() > height)
     }
 }
 
@@ -239,7 +250,7 @@ impl Climb {
         (line, slope, trace): (&DVector<f64>, &Slope, &L::Trace),
         lambda: &mut f64,
     ) -> Result<Option<Place<L>>> {
-        for _ in 0..TRIES {
+        for tried in 0..TRIES {
             let Some(off) =
                 slope.step(landscape.held(), *lambda, self.longest)
             else {
@@ -251,8 +262,11 @@ impl Climb {
                 return Ok(None);
             }
             let next = line + &off;
-            if let Some((found, trace)) =
-                landscape.slope(&next, &off, trace)?
+            // Of first tries seven in ten climb, of later ones three: a slope
+            // costs three to five densities.
+            if (tried == 0 || landscape.can_exceed(&next, slope.height)?)
+                && let Some((found, trace)) =
+                    landscape.slope(&next, &off, trace)?
                 && found.height > slope.height
             {
                 *lambda = (*lambda * EASED).max(1e-9);
