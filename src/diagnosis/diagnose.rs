@@ -466,9 +466,14 @@ impl Subject<'_> {
             first: seed.child(30),
             rough: false,
         };
-        let old = checks(self.program, &self.events, &before)?;
+        let old = checks(self.program, &self.events, &before, None)?;
         let new = match after {
-            Some(after) => checks(row.noisy.program(), &self.events, after)?,
+            Some(after) => {
+                // Another noise has the same motion.
+                let is_same = after.mechanisms.is_empty();
+                let known = is_same.then_some(old.least_squares);
+                checks(row.noisy.program(), &self.events, after, known)?
+            }
             None => old.clone(),
         };
         let fit = after.map_or(none, |after| after.fit);

@@ -192,6 +192,18 @@ impl AnyPrior {
     pub fn is_proper(&self) -> bool {
         !matches!(self, Self::Flat())
     }
+
+    /// The place on the real line of a value: infinite or not a number outside
+    /// the support.
+    pub(crate) fn line_of(&self, value: f64) -> f64 {
+        <Self as Prior<Plain>>::support(self).to_line(value)
+    }
+
+    /// The value at a place on the real line.
+    pub(crate) fn value_at(&self, z: f64) -> f64 {
+        let support = <Self as Prior<Plain>>::support(self);
+        support.from_line(Real::new(z)).0.value()
+    }
 }
 
 impl fmt::Display for AnyPrior {

@@ -283,7 +283,7 @@ fn every_force_is_what_its_formula_says() {
             let expected = added(&now);
             let error = (found - expected).abs();
             assert!(
-                error < 0.05 * expected.abs() + 1e-3,
+                error < 1e-3 * expected.abs() + 1e-6,
                 "{label} at {time} s, {place} m, {speed} m/s: \
                  {found}, not {expected}"
             );

@@ -54,11 +54,13 @@ pub(crate) struct Checks {
 /// The share of the values that the held-out stretch is predicted from.
 const KNOWN: f64 = 0.7;
 
-/// Checks a model on the recordings of its events.
+/// Checks a model on the recordings of its events. The least squares of its
+/// motion are sought where nobody knows them.
 pub(crate) fn checks(
     program: &dyn AnyProgram,
     events: &[&Event],
     fitted: &FittedModel<'_>,
+    known: Option<f64>,
 ) -> Result<Checks> {
     let recorded = recordings(events);
     if recorded.is_empty() {
@@ -82,9 +84,10 @@ pub(crate) fn checks(
         heldout_rmse: held_out(program, fitted, &values)?,
         coverage90: coverage(&bands, &values),
         ljung_box_p: uncorrelated(&found.innovations),
-        least_squares: match fitted.rough {
-            true => f64::NAN,
-            false => least_squares(&posterior, fitted.fit, &values)?,
+        least_squares: match known {
+            Some(known) => known,
+            None if fitted.rough => f64::NAN,
+            None => least_squares(&posterior, fitted.fit, &values)?,
         },
         stationary: replayed.stationary,
         places: places

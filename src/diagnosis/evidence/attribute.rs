@@ -179,7 +179,8 @@ impl Weighing<'_> {
         mut owns: Owns,
         progress: &dyn Progress,
     ) -> Result<Vec<Prospect>> {
-        let looked = self.each(|i, mechanism| {
+        let unknown = vec![(); self.catalogue.len()];
+        let looked = self.each(unknown, |i, mechanism, ()| {
             let known = self.places.get(i).map_or(&[][..], Vec::as_slice);
             let (care, seed) = (self.care, self.seed_of(i));
             let found =
@@ -197,20 +198,22 @@ impl Weighing<'_> {
         if owns.met.is_empty() {
             return Ok(looked);
         }
-        self.each(|i, mechanism| {
-            let (first, seed) = (&looked[i], self.seed_of(i).child(4));
+        self.each(looked, |i, mechanism, first| {
+            let seed = self.seed_of(i).child(4);
             again(self.program, mechanism, first, &owns.met, seed)
         })
     }
 
-    /// What is found of each mechanism, in parallel.
-    fn each(
+    /// What is found of each mechanism from what is known of it, in parallel.
+    fn each<K: Send, F: Send>(
         &self,
-        find: impl Fn(usize, &dyn Mechanism) -> Result<Prospect> + Sync,
-    ) -> Result<Vec<Prospect>> {
-        parallel::try_map(0..self.catalogue.len(), |i| {
-            let mechanism = self.catalogue[i].as_ref();
-            find(i, mechanism).map_err(|error| error.within(mechanism.name()))
+        known: Vec<K>,
+        find: impl Fn(usize, &dyn Mechanism, K) -> Result<F> + Sync,
+    ) -> Result<Vec<F>> {
+        let all = self.catalogue.iter().enumerate().zip(known);
+        parallel::try_map(all, |((i, mechanism), known)| {
+            find(i, mechanism.as_ref(), known)
+                .map_err(|error| error.within(mechanism.name()))
         })
     }
 
@@ -222,11 +225,9 @@ impl Weighing<'_> {
         known: f64,
     ) -> Result<Vec<Prospect>> {
         let threshold = highest(&prospects, known) - self.care.relevant;
-        let all = self.catalogue.iter().enumerate().zip(prospects);
-        parallel::try_map(all, |((i, mechanism), prospect)| {
+        self.each(prospects, |i, mechanism, prospect| {
             let seed = self.seed_of(i).child(3);
-            let mechanisms = [mechanism.as_ref()];
-            prospect.pursued(self.program, &mechanisms, threshold, seed)
+            prospect.pursued(self.program, &[mechanism], threshold, seed)
         })
     }
 
@@ -250,14 +251,10 @@ impl Weighing<'_> {
         known: f64,
     ) -> Result<Vec<Fit>> {
         let best = highest(&prospects, known);
-        let all = self.catalogue.iter().enumerate().zip(prospects);
-        parallel::try_map(all, |((i, mechanism), prospect)| {
-            let (mechanisms, seed) =
-                ([mechanism.as_ref()], self.seed_of(i).child(2));
+        self.each(prospects, |i, mechanism, prospect| {
+            let seed = self.seed_of(i).child(2);
             let precision = self.precision(&prospect, best);
-            prospect
-                .fit(self.program, &mechanisms, precision, seed)
-                .map_err(|error| error.within(mechanism.name()))
+            prospect.fit(self.program, &[mechanism], precision, seed)
         })
     }
 }
@@ -310,7 +307,7 @@ fn single(
 fn again(
     program: &dyn AnyProgram,
     mechanism: &dyn Mechanism,
-    first: &Prospect,
+    first: Prospect,
     met: &[Met],
     seed: Seed,
 ) -> Result<Prospect> {
@@ -327,7 +324,7 @@ fn again(
     }
     let backend = LaplaceMixture::within(space).quick();
     let second = prospect(program, &[mechanism], backend, seed.child(8))?;
-    first.clone().joined(second, &posterior, seed.child(9))
+    first.joined(second, &posterior, seed.child(9))
 }
 
 /// Where a mechanism is looked for, all other coordinates beginning at those

@@ -1,8 +1,7 @@
 //! Borders along a run, between which a confined mechanism acts.
 
 use crate::mechanism::{Role, Unknown};
-use crate::prior::{AnyPrior, Prior};
-use crate::scalar::{Plain, Real};
+use crate::prior::AnyPrior;
 
 /// How near its ends, as a share of what is possible, an edge is at the most.
 const NEAR: f64 = 1e-3;
@@ -109,8 +108,6 @@ impl<'a> Edges<'a> {
 
 /// The place on the real line of a prior's quantile.
 pub(crate) fn on_line(prior: &AnyPrior, p: f64) -> f64 {
-    let x = prior.quantile(p).unwrap_or(0.0);
-    let support = <AnyPrior as Prior<Plain>>::support(prior);
-    let line = support.to_line(Real::<Plain>::new(x).value());
+    let line = prior.line_of(prior.quantile(p).unwrap_or(0.0));
     if line.is_finite() { line } else { 0.0 }
 }

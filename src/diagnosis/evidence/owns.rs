@@ -7,8 +7,6 @@ use crate::diagnosis::locate::FreeForce;
 use crate::error::Result;
 use crate::mechanism::Mechanism;
 use crate::model::{AnyProgram, Posterior, With};
-use crate::prior::{AnyPrior, Prior};
-use crate::scalar::{Plain, Real};
 
 /// Where the model's own parameters begin.
 #[derive(Debug)]
@@ -47,9 +45,8 @@ impl Met {
     ) -> Self {
         let values = mechanism.unknowns().into_iter().zip(added);
         let values = values.map(|(unknown, z)| {
-            let support = <AnyPrior as Prior<Plain>>::support(&unknown.prior);
-            let (value, _) = support.from_line(Real::new(*z));
-            (unknown.name, unknown.unit, value.value())
+            let value = unknown.prior.value_at(*z);
+            (unknown.name, unknown.unit, value)
         });
         Self { own: own.to_vec(), values: values.collect() }
     }
@@ -68,8 +65,7 @@ impl Met {
                 *name == unknown.name && *unit == unknown.unit
             };
             let (.., value) = self.values.iter().find(is_like)?;
-            let support = <AnyPrior as Prior<Plain>>::support(&unknown.prior);
-            let z = support.to_line(*value);
+            let z = unknown.prior.line_of(*value);
             z.is_finite().then_some((i, z))
         });
         let shared: Vec<(usize, f64)> = shared.collect();
@@ -207,11 +203,7 @@ mod tests {
         let found = met.shared_with(patch, &places);
         assert_eq!(found.len(), places.len());
         let natural = |m: &dyn Mechanism, i: usize, z: f64| {
-            let prior = &m.unknowns()[i].prior;
-            <AnyPrior as Prior<Plain>>::support(prior)
-                .from_line(Real::new(z))
-                .0
-                .value()
+            m.unknowns()[i].prior.value_at(z)
         };
         for (place, before) in found.iter().zip(&places) {
             for (i, z) in [0.2, -1.5].into_iter().enumerate() {

@@ -16,7 +16,7 @@ use crate::mechanism::{Mechanism, Unknown};
 use crate::model::{Information, Posterior, coordinates};
 use crate::parallel;
 use crate::prior::{AnyPrior, Distribution, Prior};
-use crate::scalar::{Grad, Plain, Real};
+use crate::scalar::{Grad, Real};
 
 /// The quantiles of its prior between which an amplitude starts.
 const AMPLITUDES: [f64; 2] = [0.02, 0.98];
@@ -150,9 +150,8 @@ impl Screen<'_, '_> {
     /// amplitudes of either sign too.
     fn places(&self, one: &Scored, apart: usize, far: bool) -> Vec<HeldPlace> {
         let prior = &self.amplitude.prior;
-        let support = <AnyPrior as Prior<Plain>>::support(prior);
         let [low, high] = AMPLITUDES.map(|p| on_line(prior, p));
-        let told = support.to_line(one.amplitude);
+        let told = prior.line_of(one.amplitude);
         let told = if told.is_nan() { low } else { told.clamp(low, high) };
         let further = if far { self.large() } else { Vec::new() };
         let (edges, spacing) = self.edges.place(one.from, one.to, apart);

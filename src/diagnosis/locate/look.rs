@@ -126,12 +126,13 @@ impl<'a, 'm> Sought<'a, 'm> {
     /// What is seen from those peaks that hold nearly as much as the best.
     fn seen(&self, peaks: Vec<Peak>) -> Result<Vec<Look>> {
         let best = most(&peaks);
-        let near = |peak: &&Peak| best - peak.log_evidence < NEGLIGIBLE;
-        let looks = parallel::try_map(peaks.iter().filter(near), |peak| {
+        let near = |peak: &Peak| best - peak.log_evidence < NEGLIGIBLE;
+        let near = peaks.into_iter().filter(near);
+        let looks = parallel::try_map(near, |peak| {
             let own = peak.own.clone();
             let tangent =
                 self.cells.tangent(&self.each(), &peak.force, own)?;
-            Ok(tangent.map(|tangent| Look { peak: peak.clone(), tangent }))
+            Ok(tangent.map(|tangent| Look { peak, tangent }))
         })?;
         Ok(looks.into_iter().flatten().collect())
     }
