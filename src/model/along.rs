@@ -14,15 +14,6 @@ pub(super) struct Along<'d> {
     first: usize,
 }
 
-/// Some of so many coordinates as directions.
-pub(crate) fn coordinates(some: &[usize], count: usize) -> DMatrix<f64> {
-    let mut directions = DMatrix::zeros(some.len(), count);
-    for (row, &coordinate) in some.iter().enumerate() {
-        directions[(row, coordinate)] = 1.0;
-    }
-    directions
-}
-
 impl<'d> Along<'d> {
     /// The coordinates themselves.
     pub(super) const COORDINATES: Self = Self { directions: None, first: 0 };
@@ -80,4 +71,13 @@ impl<'d> Along<'d> {
         }
         sum.gemm(1.0, &scaled, &directions.transpose(), 1.0);
     }
+}
+
+/// Some of so many coordinates as directions.
+pub(crate) fn coordinates(some: &[usize], count: usize) -> DMatrix<f64> {
+    let mut directions = DMatrix::zeros(some.len(), count);
+    for (row, &coordinate) in some.iter().enumerate() {
+        directions[(row, coordinate)] = 1.0;
+    }
+    directions
 }

@@ -204,6 +204,28 @@ mod tests {
     }
 
     #[test]
+    fn along_mixed_directions_it_is_the_quadratic_form() {
+        let count = 7;
+        let program = Linear((0..count).map(|i| 0.2 * i as f64).collect());
+        let posterior = Posterior::new(&program).unwrap();
+        let z: Vec<f64> = (0..count).map(|i| (0.3 * i as f64).sin()).collect();
+        let whole = posterior.information(&z).unwrap();
+        // More than a pass takes.
+        let directions = DMatrix::from_fn(19, count, |i, j| {
+            (1.3 * (i + 5 * j) as f64).cos()
+        });
+        let along = posterior.information_along(&z, &directions).unwrap();
+        let gradient = &directions * &whole.gradient;
+        assert!((along.gradient - gradient).amax() < 1e-12);
+        let precision =
+            &directions * &whole.precision * directions.transpose();
+        assert!((along.precision - precision).amax() < 1e-12);
+        let narrow = DMatrix::zeros(2, count - 1);
+        let error = posterior.information_along(&z, &narrow).unwrap_err();
+        assert!(error.is_input());
+    }
+
+    #[test]
     fn passes_of_any_widths_add_up() {
         for count in [1, 2, 3, 5, 9, 11, 16, 17, 19, 33] {
             let weights = |i: usize| (0.7 * i as f64).cos();

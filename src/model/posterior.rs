@@ -165,12 +165,19 @@ impl<'m> Posterior<'m> {
     /// each parameter. Few of them cost less than all parameters.
     ///
     /// # Errors
-    /// As [`Posterior::density`].
+    /// A matrix of another width, and as [`Posterior::density`].
     pub fn information_along(
         &self,
         z: &[f64],
         directions: &DMatrix<f64>,
     ) -> Result<Information> {
+        if directions.ncols() != z.len() {
+            return Err(Error::input(format!(
+                "directions of {} coordinates for {} parameters",
+                directions.ncols(),
+                z.len()
+            )));
+        }
         let information = self.model.information_along(z, directions)?;
         self.tally.count(GRADIENTS, &information.density);
         Ok(information)

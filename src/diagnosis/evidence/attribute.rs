@@ -189,19 +189,35 @@ impl Weighing<'_> {
             found
         })?;
         let least = highest(&looked, known) - self.care.relevant;
-        let all = self.catalogue.iter().zip(&looked);
-        let near = all.filter(|(_, one)| one.log() > least);
-        owns.meet(near.filter_map(|(mechanism, one)| {
-            let (added, own) = one.place()?;
-            Some((one.log(), Met::of(mechanism.as_ref(), added, own)))
-        }));
+        let met = self
+            .each(looked.iter().collect(), |_, mechanism, one| {
+                self.met(mechanism, one, least)
+            })?;
+        owns.meet(met.into_iter().flatten());
         if owns.met.is_empty() {
             return Ok(looked);
         }
         self.each(looked, |i, mechanism, first| {
             let seed = self.seed_of(i).child(4);
-            again(self.program, mechanism, first, &owns.met, seed)
+            again(self.program, mechanism, first, &owns, seed)
         })
+    }
+
+    /// Where a mechanism has the model's own parameters, with ln of what it
+    /// holds, if that is more than the least.
+    fn met(
+        &self,
+        mechanism: &dyn Mechanism,
+        found: &Prospect,
+        least: f64,
+    ) -> Result<Option<(f64, Met)>> {
+        if found.log() <= least {
+            return Ok(None);
+        }
+        let peak = found.peak(self.program, &[mechanism])?;
+        Ok(peak.map(|(added, own)| {
+            (found.log(), Met::of(mechanism, &added, &own))
+        }))
     }
 
     /// What is found of each mechanism from what is known of it, in parallel.
@@ -308,19 +324,24 @@ fn again(
     program: &dyn AnyProgram,
     mechanism: &dyn Mechanism,
     first: Prospect,
-    met: &[Met],
+    owns: &Owns,
     seed: Seed,
 ) -> Result<Prospect> {
     let with = With::new(program, &[mechanism]);
     let posterior = Posterior::new(&with)?;
     let mut space = SearchSpace::default();
-    for (i, one) in met.iter().enumerate() {
+    for (i, one) in owns.met.iter().enumerate() {
         let (own, seed) = (&one.own, seed.child(i as u64));
         let anywhere = anywhere(mechanism, &[], own, seed);
         space.starts.extend(one.shared_with(mechanism, &anywhere));
         space.starts.extend(anywhere);
         let grids = edge_grids(&posterior, mechanism, &[], own, MET)?;
         space.grids.extend(grids);
+    }
+    for (i, one) in owns.alike.iter().enumerate() {
+        let seed = seed.child((owns.met.len() + i) as u64);
+        let anywhere = anywhere(mechanism, &[], &one.own, seed);
+        space.starts.extend(one.shared_with(mechanism, &anywhere[..2]));
     }
     let backend = LaplaceMixture::within(space).quick();
     let second = prospect(program, &[mechanism], backend, seed.child(8))?;

@@ -63,7 +63,7 @@ impl<'a> Edges<'a> {
     /// The place on the line of what begins at a border and lasts to the end.
     pub(super) fn onwards(&self, i: usize) -> Vec<f64> {
         let from = self.from(self.border(i as f64));
-        let length = self.length.map(|length| on_line(length, 1.0 - NEAR));
+        let length = self.length.map(to_the_end);
         std::iter::once(from).chain(length).collect()
     }
 
@@ -104,6 +104,11 @@ impl<'a> Edges<'a> {
         let p = (length - self.shortest) / (longest - self.shortest);
         self.length.map(|prior| on_line(prior, p.clamp(NEAR, 1.0 - NEAR)))
     }
+}
+
+/// The place on the line of a length that lasts nearly to the end.
+pub(super) fn to_the_end(length: &AnyPrior) -> f64 {
+    on_line(length, 1.0 - NEAR)
 }
 
 /// The place on the real line of a prior's quantile.

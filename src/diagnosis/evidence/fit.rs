@@ -7,7 +7,7 @@ use crate::diagnosis::evidence::edges::on_line;
 use crate::draws::Draws;
 use crate::error::{Error, Result};
 use crate::infer::{
-    Backend, Frozen, Inference, LaplaceMixture, Precision, Quiet, climb,
+    Backend, Frozen, Inference, LaplaceMixture, Peak, Precision, Quiet, climb,
 };
 use crate::mechanism::{Mechanism, Unknown};
 use crate::model::{AnyProgram, Point, Posterior, Program, With};
@@ -60,11 +60,31 @@ impl Prospect {
         self.log
     }
 
-    /// Where most of it is, on the real line: the mechanisms' parameters, and
-    /// the model's own; not of several events.
-    pub(crate) fn place(&self) -> Option<(&[f64], &[f64])> {
-        let frozen = self.frozen.as_ref()?;
-        Some(frozen.mixture.heaviest()?.split_at(self.added))
+    /// The highest peak that climbs from where most of it is lead to, on the
+    /// real line: the mechanisms' parameters, and the model's own; not of
+    /// several events.
+    ///
+    /// # Errors
+    /// A model that fails.
+    pub(crate) fn peak(
+        &self,
+        program: &dyn AnyProgram,
+        mechanisms: &[&dyn Mechanism],
+    ) -> Result<Option<(Vec<f64>, Vec<f64>)>> {
+        let Some(frozen) = &self.frozen else { return Ok(None) };
+        let with = With::new(program, mechanisms);
+        let posterior = Posterior::new(&with)?;
+        let mut highest: Option<Peak> = None;
+        for start in frozen.mixture.middles().into_iter().take(MIDDLES) {
+            let Some(peak) = climb(&posterior, start)? else { continue };
+            if highest.as_ref().is_none_or(|h| peak.height > h.height) {
+                highest = Some(peak);
+            }
+        }
+        Ok(highest.map(|peak| {
+            let (added, own) = peak.line.as_slice().split_at(self.added);
+            (added.to_vec(), own.to_vec())
+        }))
     }
 
     /// Whether what it holds may be above a threshold, in ln.
@@ -163,6 +183,10 @@ impl Prospect {
 const UNSEEN: f64 = 4.0;
 const OPEN: f64 = 3.0;
 const SETTLED: f64 = 1.0;
+
+/// From the middles of how many components a peak is sought: a climb from one
+/// may end where the density bends.
+const MIDDLES: usize = 5;
 
 /// For how many rounds one learns that is only looked at.
 const FEW_ROUNDS: u64 = 2;

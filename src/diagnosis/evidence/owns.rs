@@ -2,10 +2,11 @@
 
 use statrs::statistics::Statistics;
 
+use super::edges::to_the_end;
 use super::fit::Fit;
 use crate::diagnosis::locate::FreeForce;
 use crate::error::Result;
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Mechanism, Role, Unknown};
 use crate::model::{AnyProgram, Posterior, With};
 
 /// Where the model's own parameters begin.
@@ -23,6 +24,9 @@ pub(super) struct Owns {
     pub(super) tails: Vec<Vec<f64>>,
     /// Where mechanisms have them.
     pub(super) met: Vec<Met>,
+    /// Where others have them near one of these, with unknowns that it does
+    /// not have: a step in time is likely where one along the run is.
+    pub(super) alike: Vec<Met>,
     /// The standard deviation of each coordinate, with nothing added.
     widths: Vec<f64>,
 }
@@ -51,6 +55,14 @@ impl Met {
         Self { own: own.to_vec(), values: values.collect() }
     }
 
+    /// Whether it has an unknown that another has not.
+    fn says_more_than(&self, other: &Self) -> bool {
+        let has = |(name, unit, _): &(String, &str, f64)| {
+            other.values.iter().any(|(n, u, _)| n == name && u == unit)
+        };
+        !self.values.iter().all(has)
+    }
+
     /// Places of another mechanism with what both call alike as it is here;
     /// none where nothing is. A step is a patch that does not end, and where
     /// it begins a patch may.
@@ -60,24 +72,48 @@ impl Met {
         places: &[Vec<f64>],
     ) -> Vec<Vec<f64>> {
         let unknowns = mechanism.unknowns();
-        let shared = unknowns.iter().enumerate().filter_map(|(i, unknown)| {
-            let is_like = |(name, unit, _): &&(String, &str, f64)| {
-                *name == unknown.name && *unit == unknown.unit
-            };
-            let (.., value) = self.values.iter().find(is_like)?;
-            let z = unknown.prior.line_of(*value);
-            z.is_finite().then_some((i, z))
-        });
-        let shared: Vec<(usize, f64)> = shared.collect();
-        if shared.is_empty() {
+        let shared: Vec<Option<f64>> =
+            unknowns.iter().map(|unknown| self.line_of(unknown)).collect();
+        if shared.iter().all(Option::is_none) {
             return Vec::new();
         }
         let mut places = places.to_vec();
+        let onwards = places.first().cloned().and_then(|mut place| {
+            let (i, length) = length_alone(&unknowns, &shared)?;
+            place[i] = to_the_end(&length.prior);
+            Some(place)
+        });
+        places.extend(onwards);
         for place in &mut places {
-            shared.iter().for_each(|&(i, z)| place[i] = z);
+            for (z, shared) in place.iter_mut().zip(&shared) {
+                *z = shared.unwrap_or(*z);
+            }
         }
         places
     }
+
+    /// The place on the line of what is called alike here.
+    fn line_of(&self, unknown: &Unknown) -> Option<f64> {
+        let is_like = |(name, unit, _): &&(String, &str, f64)| {
+            *name == unknown.name && *unit == unknown.unit
+        };
+        let (.., value) = self.values.iter().find(is_like)?;
+        let z = unknown.prior.line_of(*value);
+        z.is_finite().then_some(z)
+    }
+}
+
+/// The length of a stretch of which the beginning alone is shared: what it
+/// begins with lasts to the end.
+fn length_alone<'u>(
+    unknowns: &'u [Unknown],
+    shared: &[Option<f64>],
+) -> Option<(usize, &'u Unknown)> {
+    let is_alone = |&(i, unknown): &(usize, &Unknown)| {
+        let is_length = matches!(unknown.role, Role::Length { .. });
+        is_length && shared[i].is_none() && shared[i - 1].is_some()
+    };
+    unknowns.iter().enumerate().skip(1).find(is_alone)
 }
 
 /// How many places of the own parameters that mechanisms have are begun from,
@@ -107,8 +143,9 @@ impl Owns {
         let best = [none.own()].into_iter().chain(open);
         let best = best.map(<[f64]>::to_vec).collect();
         let between = forces.iter().map(FreeForce::middle_of_own).collect();
-        let (met, widths) = (Vec::new(), widths(&drawn));
-        Ok(Self { best, between, tails: tails(drawn), met, widths })
+        let (widths, tails) = (widths(&drawn), tails(drawn));
+        let (met, alike) = (Vec::new(), Vec::new());
+        Ok(Self { best, between, tails, met, alike, widths })
     }
 
     /// Takes in where mechanisms have them, each with ln of what it holds: the
@@ -117,21 +154,28 @@ impl Owns {
         let mut places: Vec<(f64, Met)> = places.collect();
         places.sort_by(|a, b| b.0.total_cmp(&a.0));
         for (_, one) in places {
-            if self.met.len() < MOST_MET && self.is_elsewhere(&one.own) {
-                self.met.push(one);
+            let is_near = |known: &[f64]| self.are_near(known, &one.own);
+            if self.best.iter().any(|best| is_near(best)) {
+                continue;
+            }
+            let known = self.met.iter().chain(&self.alike);
+            let near: Vec<&Met> =
+                known.filter(|known| is_near(&known.own)).collect();
+            let says_more = near.iter().all(|known| one.says_more_than(known));
+            let list = match near.is_empty() {
+                true => &mut self.met,
+                false => &mut self.alike,
+            };
+            if says_more && list.len() < MOST_MET {
+                list.push(one);
             }
         }
     }
 
-    /// Whether no place that is begun from is near.
-    fn is_elsewhere(&self, own: &[f64]) -> bool {
-        let is_far = |known: &Vec<f64>| {
-            let off = own.iter().zip(known).zip(&self.widths);
-            off.into_iter()
-                .any(|((a, b), width)| (a - b).abs() > ELSEWHERE * width)
-        };
-        let met = self.met.iter().map(|one| &one.own);
-        self.best.iter().chain(met).all(is_far)
+    /// Whether no coordinate of a place is far from that of another.
+    fn are_near(&self, one: &[f64], other: &[f64]) -> bool {
+        let mut off = one.iter().zip(other).zip(&self.widths);
+        off.all(|((a, b), width)| (a - b).abs() <= ELSEWHERE * width)
     }
 }
 
@@ -171,6 +215,7 @@ mod tests {
             between: Vec::new(),
             tails: Vec::new(),
             met: Vec::new(),
+            alike: Vec::new(),
             widths: vec![1.0, 0.1],
         };
         // Near the best, far in the narrow coordinate, next to that, and five
@@ -190,6 +235,27 @@ mod tests {
     }
 
     #[test]
+    fn what_is_near_is_taken_in_where_it_says_more() {
+        let mut owns = Owns {
+            best: vec![vec![0.0]],
+            between: Vec::new(),
+            tails: Vec::new(),
+            met: Vec::new(),
+            alike: Vec::new(),
+            widths: vec![1.0],
+        };
+        let of = |own: f64, unit: &'static str| Met {
+            own: vec![own],
+            values: vec![("from".to_owned(), unit, own)],
+        };
+        let (time, again, place) = (of(9.0, "s"), of(9.5, "s"), of(8.5, "m"));
+        let near_the_best = of(1.0, "m");
+        let all = [&time, &again, &near_the_best, &place].map(Clone::clone);
+        owns.meet([4.0, 3.0, 2.0, 1.0].into_iter().zip(all));
+        assert_eq!((owns.met, owns.alike), (vec![time], vec![place]));
+    }
+
+    #[test]
     fn a_patch_begins_where_a_step_does() {
         let extent = Extent::EVERYTHING;
         let blocks = ["voellmy".to_owned()];
@@ -201,10 +267,14 @@ mod tests {
         let met = Met::of(step, &[0.2, -1.5], &[7.0]);
         let places = vec![vec![0.0, 0.0, 0.4, 1.0], vec![0.1, 0.2, 0.3, 2.0]];
         let found = met.shared_with(patch, &places);
-        assert_eq!(found.len(), places.len());
+        // Each, and one that lasts to the end as the step does.
+        assert_eq!(found.len(), places.len() + 1);
         let natural = |m: &dyn Mechanism, i: usize, z: f64| {
             m.unknowns()[i].prior.value_at(z)
         };
+        let longest = patch.unknowns()[2].prior.quantile(1.0).unwrap();
+        let onwards = natural(patch, 2, found[2][2]);
+        assert!(onwards > 0.99 * longest, "{onwards} of {longest}");
         for (place, before) in found.iter().zip(&places) {
             for (i, z) in [0.2, -1.5].into_iter().enumerate() {
                 let (of_step, of_patch) =

@@ -42,6 +42,7 @@ const NEARLY: f64 = 4.0;
 const NEGLIGIBLE: f64 = 10.0;
 /// Looks nearer than this many widths, squared, are one.
 const ALIKE: f64 = 0.1;
+
 /// A peak at one process, and what all processes may be begun from there.
 #[derive(Debug, Clone)]
 pub(in crate::diagnosis) struct Look {

@@ -191,12 +191,11 @@ impl Mixture {
         Self::from(self.components)
     }
 
-    /// The middle of the component with the most weight.
-    pub(crate) fn heaviest(&self) -> Option<&[f64]> {
-        let by_weight =
-            |a: &&Component, b: &&Component| a.weight.total_cmp(&b.weight);
-        let heaviest = self.components.iter().max_by(by_weight)?;
-        Some(heaviest.mean.as_slice())
+    /// The middles of the components, those with the most weight first.
+    pub(crate) fn middles(&self) -> Vec<&[f64]> {
+        let mut all: Vec<&Component> = self.components.iter().collect();
+        all.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+        all.into_iter().map(|component| component.mean.as_slice()).collect()
     }
 
     /// How many components it has.
