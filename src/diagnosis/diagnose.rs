@@ -479,10 +479,6 @@ impl Subject<'_> {
         let fit = after.map_or(none, |after| after.fit);
         let names: Vec<&str> =
             self.events.iter().map(|event| event.name()).collect();
-        let mut warnings = none.warnings.clone();
-        let others =
-            fit.warnings.iter().filter(|w| !none.warnings.contains(w));
-        warnings.extend(others.cloned());
         Ok(Diagnosis {
             event: names.join(" + "),
             baseline: baseline(none, &old, self.events[0], options),
@@ -495,10 +491,16 @@ impl Subject<'_> {
                 .collect(),
             pictured: pictured(&self.events, &old, &new, after.is_some()),
             draws: Some(fit.draws.clone()),
-            warnings,
+            warnings: warnings(none, fit),
             ..Diagnosis::default()
         })
     }
+}
+
+/// What two fits warn of, each once.
+fn warnings(none: &Fit, fit: &Fit) -> Vec<String> {
+    let others = fit.warnings.iter().filter(|w| !none.warnings.contains(w));
+    none.warnings.iter().chain(others).cloned().collect()
 }
 
 /// What the corrected model is, to be shown.

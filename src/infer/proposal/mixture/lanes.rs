@@ -1,7 +1,7 @@
 //! Components side by side: one instruction does for eight of them what each
 //! needs for its density.
 
-use super::{Component, FREEDOM};
+use super::student::{Component, FREEDOM};
 use crate::scalar::fused;
 
 const LANES: usize = 8;
