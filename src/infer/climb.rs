@@ -375,7 +375,56 @@ pub(super) fn climb_holding(
 
 #[cfg(test)]
 mod tests {
+    use std::cell::Cell;
+
     use super::*;
+
+    /// A ridge that is highest at its bend, 0, where its slope promises more.
+    #[derive(Default)]
+    struct Bend {
+        slopes: Cell<usize>,
+        heights: Cell<usize>,
+    }
+
+    impl Landscape for Bend {
+        type Trace = ();
+
+        fn held(&self) -> &[usize] {
+            &[]
+        }
+
+        fn slope(
+            &self,
+            at: &DVector<f64>,
+            _: &DVector<f64>,
+            (): &(),
+        ) -> Result<Option<(Slope, ())>> {
+            self.slopes.set(self.slopes.get() + 1);
+            let slope = Slope {
+                height: -at[0].abs(),
+                gradient: DVector::from_element(1, 1.0),
+                precision: DMatrix::identity(1, 1),
+            };
+            Ok(Some((slope, ())))
+        }
+
+        fn can_exceed(&self, at: &DVector<f64>, height: f64) -> Result<bool> {
+            self.heights.set(self.heights.get() + 1);
+            Ok(-at[0].abs() > height)
+        }
+    }
+
+    #[test]
+    fn a_step_tried_again_costs_a_height_where_it_falls() {
+        let (bend, start) = (Bend::default(), DVector::zeros(1));
+        let (slope, ()) = bend.slope(&start, &start, &()).unwrap().unwrap();
+        let climb = Climb { leaps: 0, ..Climb::default() };
+        let top =
+            climb.ascend(&bend, (start, slope, ()), |_, _| false).unwrap();
+        assert_eq!(top.unwrap().0[0], 0.0);
+        // At the start, and of the first try; a height of each other.
+        assert_eq!((bend.slopes.get(), bend.heights.get()), (2, TRIES - 1));
+    }
 
     #[test]
     fn what_is_not_held_follows_as_in_the_normal_approximation() {

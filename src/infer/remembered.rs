@@ -104,7 +104,7 @@ impl Model for Remembered<'_> {
         self.density(asked, gradient, make)
     }
 
-    /// Not kept: it is asked for where a climb ends, and is long.
+    /// Not kept: it is long.
     fn information(&self, z: &[f64]) -> Result<Information> {
         self.model.information(z)
     }

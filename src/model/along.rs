@@ -2,10 +2,11 @@
 
 use nalgebra::DMatrix;
 
+use crate::error::{Error, Result};
 use crate::scalar::{Kind, Real};
 
-/// Directions on the real line, from one of them on as many as the numbers of
-/// the run carry.
+/// The directions of one run: those from `first` on, as many as its numbers
+/// carry.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Along<'d> {
     /// A row for each direction and a column for each coordinate; `None` for
@@ -18,9 +19,16 @@ impl<'d> Along<'d> {
     /// The coordinates themselves.
     pub(super) const COORDINATES: Self = Self { directions: None, first: 0 };
 
-    /// The rows of a matrix that has a column for each coordinate.
-    pub(super) fn rows(directions: &'d DMatrix<f64>) -> Self {
-        Self { directions: Some(directions), first: 0 }
+    /// The rows of a matrix that has a column for each of so many coordinates.
+    ///
+    /// # Errors
+    /// A matrix of another width.
+    pub(super) fn rows(
+        directions: &'d DMatrix<f64>,
+        coordinates: usize,
+    ) -> Result<Self> {
+        check_width(directions, coordinates)?;
+        Ok(Self { directions: Some(directions), first: 0 })
     }
 
     pub(super) fn from(self, first: usize) -> Self {
@@ -66,15 +74,35 @@ impl<'d> Along<'d> {
             return;
         };
         let mut scaled = directions.clone();
-        for (mut column, element) in scaled.column_iter_mut().zip(diagonal) {
-            column *= *element;
+        // A run that was rejected has not come to all of them.
+        let elements = diagonal.iter().copied().chain(std::iter::repeat(0.0));
+        for (mut column, element) in scaled.column_iter_mut().zip(elements) {
+            column *= element;
         }
         sum.gemm(1.0, &scaled, &directions.transpose(), 1.0);
     }
 }
 
+/// Refuses directions that have not as many columns as there are coordinates.
+///
+/// # Errors
+/// A matrix of another width.
+pub(super) fn check_width(
+    directions: &DMatrix<f64>,
+    coordinates: usize,
+) -> Result<()> {
+    let width = directions.ncols();
+    if width == coordinates {
+        return Ok(());
+    }
+    Err(Error::input(format!(
+        "directions of {width} coordinates for {coordinates} parameters; give \
+         a column for each parameter"
+    )))
+}
+
 /// Some of so many coordinates as directions.
-pub(crate) fn coordinates(some: &[usize], count: usize) -> DMatrix<f64> {
+pub(crate) fn unit_directions(some: &[usize], count: usize) -> DMatrix<f64> {
     let mut directions = DMatrix::zeros(some.len(), count);
     for (row, &coordinate) in some.iter().enumerate() {
         directions[(row, coordinate)] = 1.0;

@@ -2,6 +2,7 @@
 
 use nalgebra::DMatrix;
 
+use super::along::check_width;
 use super::density::{Density, Weights};
 use super::information::Information;
 use super::listener::Listener;
@@ -55,15 +56,17 @@ pub trait Model: Sync {
     fn information(&self, z: &[f64]) -> Result<Information>;
 
     /// The same along some directions: rows of a matrix that has a column for
-    /// each coordinate.
+    /// each coordinate. The gradient and the precision have an entry for each
+    /// direction.
     ///
     /// # Errors
-    /// As [`Model::evaluate`].
+    /// A matrix of another width, and as [`Model::evaluate`].
     fn information_along(
         &self,
         z: &[f64],
         directions: &DMatrix<f64>,
     ) -> Result<Information> {
+        check_width(directions, z.len())?;
         Ok(self.information(z)?.along(directions))
     }
 }

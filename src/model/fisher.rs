@@ -115,7 +115,7 @@ fn bend<K: Kind>(declaration: &Declaration<'_, K>) -> f64 {
 /// For how many columns room is made at once.
 const RESERVED: usize = 256;
 
-/// How many coordinates a pass takes at the most. One of 16 takes three
+/// How many directions a pass takes at the most. One of 16 takes three
 /// quarters of the time that one of 8 and another of 2 take, at 464 values.
 const MOST: usize = 16;
 
@@ -152,7 +152,7 @@ pub(super) fn information(
         }
     }
     let density =
-        last.ok_or_else(|| Error::inference("the model has no parameters"))?;
+        last.ok_or_else(|| Error::inference("no direction to derive along"))?;
     let Columns { jacobian, bends, .. } = columns;
     let mut precision = jacobian.squared();
     along.add_diagonal(&bends, &mut precision);
@@ -184,7 +184,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::model::{Label, Posterior, Program, Run, coordinates};
+    use crate::model::{Label, Posterior, Program, Run, unit_directions};
     use crate::prior::{AnyPrior, Normal};
 
     /// 0.5 ~ N(a'x, 1) was seen, with x ~ N(0, 1) and a known.
@@ -245,7 +245,7 @@ mod tests {
             // Second differences of the prior's density over steps of 1e-3.
             assert!((&found.precision - precision).amax() < 1e-8, "{count}");
             for i in 0..count {
-                let one = coordinates(&[i], count);
+                let one = unit_directions(&[i], count);
                 let along = posterior.information_along(&z, &one).unwrap();
                 assert_eq!(along.density, found.density);
                 assert_eq!(along.gradient[0], found.gradient[i]);

@@ -16,7 +16,8 @@ pub struct Information {
     pub precision: DMatrix<f64>,
     /// The derivatives of the innovations and of their scales: `precision` is
     /// their product with themselves, and the bends of the priors. Empty where
-    /// the density is put together from others.
+    /// the density is put together from others, or taken along directions
+    /// afterwards.
     pub(crate) jacobian: Jacobian,
 }
 

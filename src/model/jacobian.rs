@@ -1,4 +1,5 @@
-//! Derivatives of all data along all coordinates.
+//! Derivatives of all data along all directions, which are coordinates unless
+//! others are asked for.
 
 use nalgebra::{DMatrix, DVector};
 

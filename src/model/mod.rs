@@ -37,7 +37,7 @@ mod together;
 mod with;
 
 pub(crate) use alone::{Alone, Common};
-pub(crate) use along::coordinates;
+pub(crate) use along::unit_directions;
 pub use any_program::{AnyProgram, RunOf};
 pub use assembled::Assembled;
 pub use blocks::declared_blocks;

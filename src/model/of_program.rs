@@ -54,7 +54,7 @@ impl<P: Program> Model for P {
         z: &[f64],
         directions: &DMatrix<f64>,
     ) -> Result<Information> {
-        fisher::information(self, z, Along::rows(directions))
+        fisher::information(self, z, Along::rows(directions, z.len())?)
     }
 }
 

@@ -162,7 +162,8 @@ impl<'m> Posterior<'m> {
     }
 
     /// The same along some directions: rows of a matrix that has a column for
-    /// each parameter. Few of them cost less than all parameters.
+    /// each parameter. The gradient and the precision have an entry for each
+    /// direction. Few of them cost less than all parameters.
     ///
     /// # Errors
     /// A matrix of another width, and as [`Posterior::density`].
@@ -171,13 +172,6 @@ impl<'m> Posterior<'m> {
         z: &[f64],
         directions: &DMatrix<f64>,
     ) -> Result<Information> {
-        if directions.ncols() != z.len() {
-            return Err(Error::input(format!(
-                "directions of {} coordinates for {} parameters",
-                directions.ncols(),
-                z.len()
-            )));
-        }
         let information = self.model.information_along(z, directions)?;
         self.tally.count(GRADIENTS, &information.density);
         Ok(information)

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::along::coordinates;
+use super::along::unit_directions;
 use super::density::{Density, Weights};
 use super::face::{Model, Point};
 use super::information::Information;
@@ -60,7 +60,7 @@ impl<'a> Slice<'a> {
             natural: posterior.natural(line)?,
             line: line.to_vec(),
             unknown: unknown.to_vec(),
-            directions: coordinates(unknown, line.len()),
+            directions: unit_directions(unknown, line.len()),
             known: known.sum,
         })
     }
@@ -275,6 +275,13 @@ mod tests {
         let along =
             own.information_along(&z, &DMatrix::identity(1, 1)).unwrap();
         assert_eq!(along.precision, found.precision);
+        let all_unknown = Slice::new(&whole, &line, &[0, 1]).unwrap();
+        let mixed = DMatrix::from_row_slice(3, 2, &[1., 2., -1., 0.5, 0., 3.]);
+        let along =
+            all_unknown.information_along(&line, &mixed).unwrap().precision;
+        let expected = &mixed * &all.precision * mixed.transpose();
+        assert!((along - expected).amax() < 1e-9);
+        assert!(own.information_along(&z, &mixed).unwrap_err().is_input());
         let mut gradient = [0.0];
         own.gradient(&z, Weights::LINE, &mut gradient).unwrap();
         assert_eq!(gradient[0], all.gradient[1]);

@@ -55,7 +55,8 @@ pub(crate) struct Checks {
 const KNOWN: f64 = 0.7;
 
 /// Checks a model on the recordings of its events. The least squares of its
-/// motion are sought where nobody knows them.
+/// motion, where these are known, are not sought again; of a rough fit they are
+/// not a number.
 pub(crate) fn checks(
     program: &dyn AnyProgram,
     events: &[&Event],

@@ -3,7 +3,7 @@
 
 use super::fit::{Fit, Prospect, fit, prospect, spread};
 use super::grids::even_grids;
-use super::owns::{Met, Owns};
+use super::owns::{MOST_MET, Met, Owns};
 use super::screen::{COARSE, FINE, MET, Mesh, edge_grids};
 use crate::diagnosis::locate::{FreeForce, locate_all};
 use crate::draws::log_sum_exp;
@@ -318,6 +318,10 @@ fn single(
     prospect(program, &[mechanism], backend, seed.child(1))
 }
 
+/// From how many places a mechanism begins with what it shares with one that is
+/// near another.
+const ALIKE: usize = 2;
+
 /// Looks at a single mechanism once more, with the model's own parameters
 /// beginning where others have them: what both looks find together.
 fn again(
@@ -341,11 +345,14 @@ fn again(
     for (i, one) in owns.alike.iter().enumerate() {
         let seed = seed.child((owns.met.len() + i) as u64);
         let anywhere = anywhere(mechanism, &[], &one.own, seed);
-        space.starts.extend(one.shared_with(mechanism, &anywhere[..2]));
+        let few = &anywhere[..ALIKE.min(anywhere.len())];
+        space.starts.extend(one.shared_with(mechanism, few));
     }
     let backend = LaplaceMixture::within(space).quick();
-    let second = prospect(program, &[mechanism], backend, seed.child(8))?;
-    first.joined(second, &posterior, seed.child(9))
+    let after = 2 * MOST_MET as u64;
+    let looking = seed.child(after);
+    let second = prospect(program, &[mechanism], backend, looking)?;
+    first.joined(second, &posterior, seed.child(after + 1))
 }
 
 /// Where a mechanism is looked for, all other coordinates beginning at those

@@ -60,8 +60,8 @@ impl Prospect {
         self.log
     }
 
-    /// The highest peak that climbs from where most of it is lead to, on the
-    /// real line: the mechanisms' parameters, and the model's own; not of
+    /// The highest peak that climbs from the heaviest components reach, on the
+    /// real line: the mechanisms' parameters, and the model's own; `None` of
     /// several events.
     ///
     /// # Errors

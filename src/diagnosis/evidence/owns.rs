@@ -24,8 +24,8 @@ pub(super) struct Owns {
     pub(super) tails: Vec<Vec<f64>>,
     /// Where mechanisms have them.
     pub(super) met: Vec<Met>,
-    /// Where others have them near one of these, with unknowns that it does
-    /// not have: a step in time is likely where one along the run is.
+    /// Places near one of these, whose mechanism has an unknown that those near
+    /// it lack: a step in time is likely where one along the run is.
     pub(super) alike: Vec<Met>,
     /// The standard deviation of each coordinate, with nothing added.
     widths: Vec<f64>,
@@ -63,9 +63,10 @@ impl Met {
         !self.values.iter().all(has)
     }
 
-    /// Places of another mechanism with what both call alike as it is here;
-    /// none where nothing is. A step is a patch that does not end, and where
-    /// it begins a patch may.
+    /// Places of another mechanism with what both call alike as it is here, and
+    /// one that lasts to the end where the beginning alone is shared; none
+    /// where nothing is. A step is a patch that does not end, and where it
+    /// begins a patch may.
     pub(super) fn shared_with(
         &self,
         mechanism: &dyn Mechanism,
@@ -117,8 +118,9 @@ fn length_alone<'u>(
 }
 
 /// How many places of the own parameters that mechanisms have are begun from,
-/// and from how many widths on these are places of their own.
-const MOST_MET: usize = 4;
+/// and how many near these that tell of more; from how many widths on places
+/// are such of their own.
+pub(super) const MOST_MET: usize = 4;
 const ELSEWHERE: f64 = 2.0;
 
 impl Owns {
@@ -149,7 +151,8 @@ impl Owns {
     }
 
     /// Takes in where mechanisms have them, each with ln of what it holds: the
-    /// likeliest first, as far as these are places of their own.
+    /// likeliest first, as far as these are places of their own, or tell of an
+    /// unknown that those near them lack.
     pub(super) fn meet(&mut self, places: impl Iterator<Item = (f64, Met)>) {
         let mut places: Vec<(f64, Met)> = places.collect();
         places.sort_by(|a, b| b.0.total_cmp(&a.0));

@@ -13,7 +13,7 @@ use super::others::Others;
 use crate::error::Result;
 use crate::infer::{HeldGrid, HeldPlace};
 use crate::mechanism::{Mechanism, Unknown};
-use crate::model::{Information, Posterior, coordinates};
+use crate::model::{Information, Posterior, unit_directions};
 use crate::parallel;
 use crate::prior::{AnyPrior, Distribution, Prior};
 use crate::scalar::{Grad, Real};
@@ -190,7 +190,7 @@ impl Screen<'_, '_> {
     /// The density with a small amplitude from each border on, along it.
     fn along(&self, small: f64) -> Result<Vec<Option<Information>>> {
         let index = self.others.before.len();
-        let along = coordinates(&[index], self.posterior.dimension());
+        let along = unit_directions(&[index], self.posterior.dimension());
         parallel::try_map(0..self.edges.borders(), |i| {
             let line = self.line(small, &self.edges.onwards(i));
             let about = self.posterior.information_along(&line, &along)?;

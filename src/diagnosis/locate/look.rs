@@ -38,9 +38,9 @@ pub(super) const COARSE: Grid = Grid {
 /// How much less than the best an edge holds, in ln, beyond which a grid
 /// grows.
 const NEARLY: f64 = 4.0;
-/// Looks that hold so much less than the best, in ln, teach nothing.
+/// Peaks that hold so much less than the best, in ln, teach nothing.
 const NEGLIGIBLE: f64 = 10.0;
-/// Looks nearer than this many widths, squared, are one.
+/// Peaks nearer than this many widths, squared, are one.
 const ALIKE: f64 = 0.1;
 
 /// A peak at one process, and what all processes may be begun from there.

@@ -50,7 +50,7 @@ const FAR: f64 = 3.0;
 const GLANCE: Effort =
     Effort { learning: 40, rounds: 2, last: (150, 150), ..EFFORT };
 /// Of how many cells the force is then: derivatives along these and the model's
-/// own parameters take two passes instead of three, and half the time.
+/// own parameters, where looks begin, take two passes instead of three.
 const FEW_CELLS: usize = 24;
 
 /// The free-form force as a mechanism of its own, with the fit that it has.

@@ -114,8 +114,8 @@ pub(super) fn half_log_det(precision: &Cholesky<f64, Dyn>) -> f64 {
     precision.l_dirty().diagonal().iter().map(|d| d.ln()).sum()
 }
 
-/// ln p(own, data | waves) to second order, as of no waves and the own
-/// parameters that it was made at.
+/// ln p(own, data | waves) to second order, expanded about zero waves and the
+/// own parameters `own`.
 #[derive(Debug, Clone)]
 pub(super) struct Tangent {
     pub(super) own: DVector<f64>,
@@ -167,8 +167,9 @@ impl Tangent {
         finite.then_some(Waves { mean, precision })
     }
 
-    /// ln p(own, data) at the own parameters that the waves are best at, the
-    /// force integrated.
+    /// ln p(own, data) at the tangent's own parameters, the force integrated,
+    /// where such waves are best. Of waves that are best at other own
+    /// parameters nearby it says about which tangent promises more.
     pub(super) fn height(&self, Waves { mean, precision }: &Waves) -> f64 {
         let bent = mean.dot(&(&self.of_waves * mean)) + mean.norm_squared();
         let half = half_log_det(precision);

@@ -11,7 +11,7 @@ type Eight = [f64; LANES];
 
 /// All components of a mixture, eight at a time; the last are padded with some
 /// that have no density.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(super) struct Lanes {
     blocks: Vec<Block>,
 }

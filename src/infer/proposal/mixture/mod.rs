@@ -220,6 +220,41 @@ mod tests {
         }
     }
 
+    #[test]
+    fn side_by_side_densities_are_those_of_each() {
+        // A block and one more, of an even and of an odd power.
+        for dimension in [2, 3] {
+            let part = |k: usize| {
+                let of = |i: usize| (1.7 * (k + 3 * i) as f64).sin();
+                let mean = DVector::from_fn(dimension, |i, _| 2.0 * of(i));
+                let factor = DMatrix::from_fn(dimension, dimension, |i, j| {
+                    of(i + j) + if i == j { 2.0 } else { 0.0 }
+                });
+                (1.0 + k as f64, mean, &factor * factor.transpose())
+            };
+            let mixture = Mixture::of((0..9).map(part)).unwrap();
+            assert_eq!(mixture.components(), 9);
+            let each = |z: &[f64]| -> Vec<f64> {
+                let all = mixture.components.iter();
+                all.map(|c| c.log_density_at(c.distance(z))).collect()
+            };
+            let mut shares = Shares::default();
+            for far in [0.3, 5.0, 1e3, 1e150] {
+                let z = vec![far; dimension];
+                let each = each(&z);
+                let known = log_sum_exp(each.iter().copied());
+                let off = mixture.log_density(&z) - known;
+                // Round-off of some hundred in ln.
+                assert!(off.abs() < 1e-11, "{dimension}, {far}: {off}");
+                assert!((shares.at(&mixture, &z) - known).abs() < 1e-11);
+                assert_eq!(shares.of.len(), 9);
+                for (share, log) in shares.of.iter().zip(each) {
+                    assert!((share - (log - known).exp()).abs() < 1e-11);
+                }
+            }
+        }
+    }
+
     /// Two components, of a quarter and three quarters of the weight.
     fn two() -> Mixture {
         let part = |weight, mean, variance| {
