@@ -3,9 +3,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-use std::io::Write;
+use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 
+use couloir::challenge::{Errors, Mix, cases};
 use couloir::diagnosis::{Diagnosis, Options, Verdict, diagnose};
 use couloir::infer::Quiet;
 use couloir::io;
@@ -22,6 +23,36 @@ fn diagnosed(file: io::EventFile, friction: Option<&str>) -> Diagnosis {
         .unwrap();
     let options = Options::of(&model, 1);
     diagnose(&model, model.event(), &options, &Quiet).unwrap()
+}
+
+/// A case of the challenge, one recording with simple errors.
+fn challenge_case(seed: u64, name: &str) -> io::EventFile {
+    let all = cases(200, seed, Mix::One, Errors::Simple).unwrap();
+    let case = all.into_iter().find(|case| case.name == name).unwrap();
+    let files = case.recordings.into_iter().next().unwrap().files;
+    let text = |name: &str| {
+        let file = files.iter().find(|(file, _)| *file == name);
+        file.map(|(_, text)| text.clone()).unwrap()
+    };
+    let open = |name: &str| Ok((Cursor::new(text(name)), PathBuf::from(name)));
+    let event = text("event.toml");
+    io::parse_event(&event, Path::new(name), open, &Laws::default()).unwrap()
+}
+
+/// Along the speed a force of this case led to where it stops the mass, and a
+/// tangent promised e^131000 there: all other looks seemed to hold nothing.
+#[test]
+fn what_a_tangent_alone_promises_is_no_force() {
+    let file = challenge_case(64219, "case-128");
+    let model =
+        Assembled::new(file.event, file.friction, file.noise, &file.priors)
+            .unwrap();
+    let options = Options::of(&model, 64219);
+    let found = diagnose(&model, model.event(), &options, &Quiet).unwrap();
+    // Errors of known independence make a force very likely: 278 in ln.
+    assert_eq!(found.forces.len(), 3);
+    assert!(found.forces.iter().all(|f| f.log_bayes_factor.abs() < 1e3));
+    assert_eq!(found.group, ["friction-hardening"]);
 }
 
 /// The car's mass [kg], frontal area [m2] and the air's density [kg/m3], by
