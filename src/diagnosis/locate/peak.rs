@@ -21,17 +21,18 @@ const NEARBY: f64 = 0.5;
 /// of 6900 places that counted, 24 gained more.
 const FURTHER: f64 = 2.0;
 
-/// By how much, in ln, the density at a peak may fall short of what the last
-/// tangent promised there: its gain was a few at most, unless the tangents ended
-/// without having settled.
-const BROKEN: f64 = 2.0;
+/// By how much, in ln, a peak counts for more than where its last tangent was
+/// made. Tangents end where the best waves by one gain half a unit; but where a
+/// force stops the mass one may promise anything.
+const FURTHEST: f64 = 2.0;
 
 /// A peak of the density of a model's own parameters at one process.
 #[derive(Debug, Clone)]
 pub(in crate::diagnosis) struct Peak {
     pub(super) process: Process,
     pub(super) own: DVector<f64>,
-    /// The model there, along the process's waves, and the force.
+    /// The model there, along the process's waves, and the force that the
+    /// tangent was made at.
     pub(super) tangent: Tangent,
     pub(super) force: DVector<f64>,
     /// About minus the Hessian of the own parameters' density.
@@ -58,34 +59,30 @@ impl Peak {
         let found =
             CLIMB.ascend(ridge, (own, slope, tangent), |_, _| false)?;
         let Some((own, slope, tangent)) = found else { return Ok(None) };
-        let Some(waves) = tangent.waves(&own) else { return Ok(None) };
-        let is = ridge.height_at(&waves, &own)?;
-        // A tangent so far off that its force stops the mass promises anything.
-        let is_there = slope.height - is < BROKEN;
-        let peak = Self::of(ridge, process, (own, slope, tangent), &waves);
-        Ok(peak.filter(|_| is_there))
+        Ok(Self::of(ridge, process, own, slope, tangent))
     }
 
-    /// The one that a climb came to, where waves are best; `None` where it has
-    /// no width.
+    /// The one that a climb came to; `None` where it has no width.
     fn of(
         ridge: &Ridge<'_, '_>,
         process: Process,
-        (own, slope, tangent): (DVector<f64>, Slope, Tangent),
-        waves: &Waves,
+        own: DVector<f64>,
+        slope: Slope,
+        tangent: Tangent,
     ) -> Option<Self> {
-        let Slope { height, precision, .. } = slope;
+        let Slope { height: promised, precision, .. } = slope;
+        let waves = tangent.waves(&own)?;
+        let sure = tangent.height_of(&tangent.at, &waves.precision);
+        let height = promised.min(sure + FURTHEST) + process.log_prior();
         let half = half_log_det(&precision.clone().cholesky()?);
-        let force = &ridge.basis.factor * &waves.mean;
-        let height = height + process.log_prior();
         let n = own.len() as f64;
         let log_evidence =
             height - half + 0.5 * n * std::f64::consts::TAU.ln();
         Some(Self {
             process,
+            force: &ridge.basis.factor * &tangent.at,
             own,
             tangent,
-            force,
             precision,
             height,
             log_evidence,
@@ -113,15 +110,6 @@ pub(super) struct Ridge<'a, 'm> {
 }
 
 impl Ridge<'_, '_> {
-    /// ln p(own, data) with such waves for the best, the force integrated as if
-    /// normal.
-    fn height_at(&self, waves: &Waves, own: &DVector<f64>) -> Result<f64> {
-        let force = &self.basis.factor * &waves.mean;
-        let log = self.cells.log_density(&force, own.as_slice())?;
-        let half = half_log_det(&waves.precision);
-        Ok(log - 0.5 * waves.mean.norm_squared() - half)
-    }
-
     /// A tangent at the waves that are about best at some own parameters, from
     /// one nearby, and the best waves by it; `None` where there is no density.
     ///

@@ -99,6 +99,7 @@ impl Cells<'_, '_> {
             across,
             of_own: view((m, m), (n, n)),
             own,
+            at: waves.clone(),
         }))
     }
 }
@@ -119,6 +120,8 @@ pub(super) fn half_log_det(precision: &Cholesky<f64, Dyn>) -> f64 {
 #[derive(Debug, Clone)]
 pub(super) struct Tangent {
     pub(super) own: DVector<f64>,
+    /// The waves that it was made at; of no use where they are others by now.
+    pub(super) at: DVector<f64>,
     height: f64,
     /// Along the waves, and along the own parameters.
     pulls: (DVector<f64>, DVector<f64>),
@@ -133,6 +136,7 @@ impl Tangent {
     pub(super) fn along(&self, Basis { factor, .. }: &Basis) -> Self {
         Self {
             own: self.own.clone(),
+            at: DVector::zeros(factor.ncols()),
             height: self.height,
             pulls: (factor.tr_mul(&self.pulls.0), self.pulls.1.clone()),
             of_waves: factor.tr_mul(&(&self.of_waves * factor)),
@@ -145,6 +149,7 @@ impl Tangent {
     pub(super) fn scaled(&self, by: f64) -> Self {
         Self {
             own: self.own.clone(),
+            at: &self.at / by,
             height: self.height,
             pulls: (&self.pulls.0 * by, self.pulls.1.clone()),
             of_waves: &self.of_waves * (by * by),
@@ -171,9 +176,19 @@ impl Tangent {
     /// where such waves are best. Of waves that are best at other own
     /// parameters nearby it says about which tangent promises more.
     pub(super) fn height(&self, Waves { mean, precision }: &Waves) -> f64 {
-        let bent = mean.dot(&(&self.of_waves * mean)) + mean.norm_squared();
+        self.height_of(mean, precision)
+    }
+
+    /// The same with waves that need not be the best. Of those that it was made
+    /// at it promises nothing that is not there.
+    pub(super) fn height_of(
+        &self,
+        waves: &DVector<f64>,
+        precision: &Cholesky<f64, Dyn>,
+    ) -> f64 {
+        let bent = waves.dot(&(&self.of_waves * waves)) + waves.norm_squared();
         let half = half_log_det(precision);
-        self.height + self.pulls.0.dot(mean) - 0.5 * bent - half
+        self.height + self.pulls.0.dot(waves) - 0.5 * bent - half
     }
 
     /// ln p(own, data), the force integrated, about the tangent's own
