@@ -119,7 +119,7 @@ impl FreeForce {
     /// The model's own parameters where they are likeliest with the force, on
     /// the real line: at a peak, since medians may lie between two.
     pub(in crate::diagnosis) fn likeliest_own(&self) -> Option<&[f64]> {
-        Some(highest(&self.looks)?.peak.own.as_slice())
+        Some(highest(&self.looks)?.peak.top.line.as_slice())
     }
 }
 

@@ -128,11 +128,10 @@ impl<'a, 'm> Sought<'a, 'm> {
     fn seen(&self, peaks: Vec<Peak>) -> Result<Vec<Look>> {
         let best = most(&peaks);
         let near = |peak: &Peak| best - peak.log_evidence < NEGLIGIBLE;
-        let near = peaks.into_iter().filter(near);
+        let (near, each) = (peaks.into_iter().filter(near), self.each());
         let looks = parallel::try_map(near, |peak| {
-            let own = peak.own.clone();
-            let tangent =
-                self.cells.tangent(&self.each(), &peak.force, own)?;
+            let own = peak.top.line.clone();
+            let tangent = self.cells.tangent(&each, &peak.force, own)?;
             Ok(tangent.map(|tangent| Look { peak, tangent }))
         })?;
         Ok(looks.into_iter().flatten().collect())
@@ -186,7 +185,8 @@ impl<'a, 'm> Sought<'a, 'm> {
             let Some(peak) = Peak::climbed(&ridge, process, &from)? else {
                 continue;
             };
-            let alike = |k: &Peak| k.distance(&process, &peak.own) < ALIKE;
+            let alike =
+                |k: &Peak| k.distance(&process, &peak.top.line) < ALIKE;
             if known.iter().any(alike) {
                 break;
             }
@@ -226,13 +226,13 @@ fn most<'l>(peaks: impl IntoIterator<Item = &'l Peak>) -> f64 {
 pub(super) fn proposal(looks: &[Look]) -> Result<Mixture> {
     let best = most(looks.iter().map(|look| &look.peak));
     let parts = looks.iter().filter_map(|Look { peak, .. }| {
-        let n = peak.own.len();
-        let own = peak.precision.clone().cholesky()?.inverse();
+        let n = peak.top.line.len();
+        let own = peak.top.precision.clone().cholesky()?.inverse();
         let identity = DMatrix::identity(2 + n, 2 + n);
         let mut covariance = identity * SPACING.powi(2);
         covariance.view_mut((2, 2), (n, n)).copy_from(&own);
         let Process(length, size) = peak.process;
-        let own = peak.own.iter().copied();
+        let own = peak.top.line.iter().copied();
         let mean: Vec<f64> = [length, size].into_iter().chain(own).collect();
         // The root keeps those in whose approximation is poor.
         let weight = (0.5 * (peak.log_evidence - best)).exp();

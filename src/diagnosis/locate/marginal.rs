@@ -90,7 +90,7 @@ impl<'a, 'm> Marginal<'a, 'm> {
         looks: Vec<Look>,
         shared: bool,
     ) -> Self {
-        let heights = looks.iter().map(|look| look.peak.height);
+        let heights = looks.iter().map(|look| look.peak.top.height);
         let least = heights.fold(f64::NEG_INFINITY, f64::max) - DEEP;
         Self { sought, looks, least, shared }
     }

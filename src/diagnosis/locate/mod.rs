@@ -144,7 +144,7 @@ pub(crate) fn outlook(
         }
     }
     let own = highest(&looks)
-        .map_or_else(Vec::new, |look| look.peak.own.as_slice().to_vec());
+        .map_or_else(Vec::new, |look| look.peak.top.line.as_slice().to_vec());
     let mixture = proposal(&looks)?;
     let marginal = Marginal::new(sought, looks, program.events() > 1);
     let learned = learn(&marginal, mixture, GLANCE, seed.child(0))?;

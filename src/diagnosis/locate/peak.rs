@@ -1,12 +1,12 @@
 //! The peak of the density of a model's own parameters under one process, the
 //! force integrated.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use super::process::Process;
-use super::tangent::{Basis, Cells, Tangent, Waves, half_log_det};
+use super::tangent::{Basis, Cells, Tangent, Waves};
 use crate::error::Result;
-use crate::infer::{Climb, Landscape, Slope};
+use crate::infer::{self, Climb, Landscape, Slope};
 
 /// How wide what is drawn about a place of the fine grid lies.
 pub(super) const SPACING: f64 = 0.6;
@@ -30,17 +30,15 @@ const FURTHEST: f64 = 2.0;
 #[derive(Debug, Clone)]
 pub(in crate::diagnosis) struct Peak {
     pub(super) process: Process,
-    pub(super) own: DVector<f64>,
+    /// The own parameters, with ln of the density's height, the process's prior
+    /// included.
+    pub(super) top: infer::Peak,
+    /// ln of about what it integrates to.
+    pub(super) log_evidence: f64,
     /// The model there, along the process's waves, and the force that the
     /// tangent was made at.
     pub(super) tangent: Tangent,
     pub(super) force: DVector<f64>,
-    /// About minus the Hessian of the own parameters' density.
-    pub(super) precision: DMatrix<f64>,
-    /// ln of its height, and of about what it integrates to, both with the
-    /// process's prior.
-    pub(super) height: f64,
-    pub(super) log_evidence: f64,
 }
 
 impl Peak {
@@ -74,19 +72,10 @@ impl Peak {
         let waves = tangent.waves(&own)?;
         let sure = tangent.height_of(&tangent.at, &waves.precision);
         let height = promised.min(sure + FURTHEST) + process.log_prior();
-        let half = half_log_det(&precision.clone().cholesky()?);
-        let n = own.len() as f64;
-        let log_evidence =
-            height - half + 0.5 * n * std::f64::consts::TAU.ln();
-        Some(Self {
-            process,
-            force: &ridge.basis.factor * &tangent.at,
-            own,
-            tangent,
-            precision,
-            height,
-            log_evidence,
-        })
+        let top = infer::Peak { line: own, height, precision };
+        let log_evidence = top.log_evidence()?;
+        let force = &ridge.basis.factor * &tangent.at;
+        Some(Self { process, top, log_evidence, tangent, force })
     }
 
     /// About how unlikely a place is to be under this peak.
@@ -95,9 +84,8 @@ impl Peak {
         process: &Process,
         own: &DVector<f64>,
     ) -> f64 {
-        let off = own - &self.own;
         self.process.distance(process) / SPACING.powi(2)
-            + off.dot(&(&self.precision * &off))
+            + self.top.distance(own)
     }
 }
 

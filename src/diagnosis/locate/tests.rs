@@ -55,6 +55,17 @@ fn pushed() -> Sliding {
     Sliding(event.build().unwrap())
 }
 
+/// What is to be seen of a force over time in these speeds.
+fn seen(check: impl FnOnce(Sought<'_, '_>)) {
+    let program = pushed();
+    let extent = program.0.extent();
+    let form = FreeForm::cells(&extent, Axis::Time, CELLS);
+    let with = With::new(&program, &[&form]);
+    let posterior = Posterior::new(&with).unwrap();
+    let sought = Sought::of(&posterior, &extent, CELLS);
+    check(sought);
+}
+
 /// The same in matrices: what is left of the speeds at the mean friction, what
 /// is known of it without a force, and how the force of each cell adds.
 struct Linear {
@@ -203,12 +214,10 @@ fn what_is_left_open_is_what_linear_algebra_says() {
 
 #[test]
 fn along_waves_a_tangent_is_that_of_the_cells() {
-    let program = pushed();
-    let extent = program.0.extent();
-    let form = FreeForm::cells(&extent, Axis::Time, CELLS);
-    let with = With::new(&program, &[&form]);
-    let posterior = Posterior::new(&with).unwrap();
-    let sought = Sought::of(&posterior, &extent, CELLS);
+    seen(check_waves);
+}
+
+fn check_waves(sought: Sought<'_, '_>) {
     let (small, large) = (Process(0.3, -0.5), Process(0.3, 1.0));
     let waves = sought.basis(&large);
     let count = waves.factor.ncols();
@@ -241,23 +250,21 @@ fn along_waves_a_tangent_is_that_of_the_cells() {
     let still = DVector::zeros(count);
     let none = of(&waves, &still);
     let log = sought.cells.log_density(&DVector::zeros(CELLS), own.as_slice());
-    let half = half_log_det(&none.waves(&own).unwrap().precision);
     let precision = none.waves(&own).unwrap().precision;
+    let half = half_log_det(&precision);
     let none = none.height(&Waves { mean: still, precision });
     assert!((none + half - log.unwrap()).abs() < 1e-9);
 }
 
 #[test]
 fn on_an_even_slope_a_force_without_shape_is_a_friction() {
-    let program = pushed();
-    let extent = program.0.extent();
-    let form = FreeForm::cells(&extent, Axis::Time, CELLS);
-    let with = With::new(&program, &[&form]);
-    let posterior = Posterior::new(&with).unwrap();
-    let sought = Sought::of(&posterior, &extent, CELLS);
+    seen(check_friction);
+}
+
+fn check_friction(sought: Sought<'_, '_>) {
     let looks = sought.looks(&[MU.0], COARSE).unwrap();
     let tangent = &highest(&looks).unwrap().tangent;
-    let found = confounded::confounded(tangent, &extent).unwrap();
+    let found = confounded::confounded(tangent, sought.extent).unwrap();
     assert_eq!(found.ncols(), 1);
     // But for the ridge that keeps it finite.
     let sign = found[0].signum();
