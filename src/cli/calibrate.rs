@@ -23,7 +23,7 @@ use crate::infer::{Progress, Quiet, Suited, suited};
 use crate::model::{Assembled, Posterior};
 use crate::physics::friction::Laws;
 use crate::report::{
-    calibration_json, in_words, noises, page, picture, pictures, table,
+    calibration_json, in_words, misfit, noises, page, picture, pictures, table,
 };
 use crate::seed::Seed;
 use crate::sweep::DRAWS;
@@ -267,6 +267,13 @@ fn gathered(found: &Calibration, model: &Assembled) -> Result<InferenceData> {
 fn tell(found: &Calibration) -> String {
     let width = width();
     let mut text = String::new();
+    let words = in_words(&found.report);
+    let misfits = usize::from(misfit(&found.report).is_some());
+    // Whether the model fits stands above all.
+    for sentence in &words[..misfits] {
+        text.push_str(&wrapped(sentence, width));
+        text.push('\n');
+    }
     text.push_str(&picture(&found.report, width, 16));
     text.push('\n');
     text.push_str(&table(&found.report, width));
@@ -276,8 +283,8 @@ fn tell(found: &Calibration) -> String {
         text.push_str(&noises);
         text.push('\n');
     }
-    for sentence in in_words(&found.report) {
-        text.push_str(&wrapped(&sentence, width));
+    for sentence in &words[misfits..] {
+        text.push_str(&wrapped(sentence, width));
     }
     let report = &found.report;
     let run = format!(

@@ -274,7 +274,7 @@ impl Subject<'_> {
                 let seed = seed.child(50);
                 let force =
                     left(program, mechanisms, fit, &self.extent, seed)?;
-                Ok((Some(Rest::of(&force)), Some(force)))
+                Ok((force.as_ref().map(Rest::of), force))
             }
             None => {
                 let forces = &row.found()?.forces;

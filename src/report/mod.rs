@@ -11,6 +11,7 @@ pub(crate) mod digits;
 pub(crate) mod fixture;
 mod json;
 mod law;
+mod misfit;
 mod noises;
 mod origin;
 #[cfg(feature = "pages")]
@@ -24,6 +25,7 @@ pub use crate::predict::{Bands, Statistic};
 pub use json::calibration_json;
 pub(crate) use json::noise_json;
 pub use law::LawReport;
+pub(crate) use misfit::misfit;
 pub use noises::{NoiseReport, noises};
 pub(crate) use noises::{NoiseRow, noise_lines};
 pub use origin::Origin;

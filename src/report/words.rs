@@ -1,6 +1,7 @@
 //! The result in sentences that a snow scientist can check.
 
 use super::digits::{beside, p_value, per_cent, significant};
+use super::misfit::misfit;
 use super::noises::averaged;
 use super::text::unit;
 use super::{CalibrationReport, LawReport, ParameterReport};
@@ -11,10 +12,6 @@ const RHAT_AGREES: f64 = 1.01;
 const ESS_ENOUGH: f64 = 400.0;
 /// The level of the residual tests.
 const LEVEL: f64 = 0.05;
-/// How many times as large as what is new in them from value to value the
-/// misses of a flow that fits may be: errors of a receiver that smooths over
-/// six of its values, or an AR(1) with a correlation of 0.97.
-const SMOOTH: f64 = 6.0;
 /// How many parameters a sentence lists.
 const LISTED: usize = 6;
 
@@ -53,31 +50,6 @@ pub(super) fn sentences(report: &CalibrationReport) -> Vec<String> {
     .flatten()
     .chain(report.notes.iter().cloned())
     .collect()
-}
-
-/// Whether the flow misses the recording by far more than changes from one
-/// value to the next: errors with a memory take a mismatch for their own.
-fn misfit(report: &CalibrationReport) -> Option<String> {
-    if report.bands.times != report.times {
-        return None;
-    }
-    let pairs = report.values.iter().zip(&report.bands.median);
-    let misses: Vec<f64> = pairs.map(|(value, flow)| value - flow).collect();
-    let news = misses.windows(2).map(|w| 0.5 * (w[1] - w[0]).powi(2));
-    let news = news.sum::<f64>() / (misses.len() as f64 - 1.0);
-    let rmse = report.bands.rmse(&report.values);
-    let times = rmse / news.sqrt();
-    if !(times.is_finite() && times > SMOOTH) {
-        return None;
-    }
-    let unit = unit(&report.unit);
-    Some(format!(
-        "This model does not fit: its flow misses the recording by {} {unit}, \
-         {} times what changes from one value to the next; `couloir diagnose` \
-         says what may be missing.",
-        significant(rmse, 2),
-        significant(times, 2)
-    ))
 }
 
 fn subject(report: &CalibrationReport) -> String {
@@ -302,24 +274,6 @@ mod tests {
         assert!(words[1].contains("mu is 0.3"));
         assert!(words[4].starts_with("The chains agree:"));
         assert!(words.iter().all(|w| w.ends_with('.')));
-    }
-
-    #[test]
-    fn a_mismatch_that_errors_hide_comes_first() {
-        let mut report = fixture::calibration();
-        let flow = report.bands.median.clone();
-        let slow = |i: usize| 3.0 * (0.05 * i as f64).sin();
-        let off = |(i, flow): (usize, &f64)| flow + slow(i);
-        report.times = report.bands.times.clone();
-        report.values = flow.iter().enumerate().map(off).collect();
-        let words = in_words(&report);
-        assert!(words[0].starts_with("This model does not fit"), "{words:?}");
-        // As large, but new each time.
-        let new = |(i, flow): (usize, &f64)| {
-            flow + if i % 2 == 0 { 3.0 } else { -3.0 }
-        };
-        report.values = flow.iter().enumerate().map(new).collect();
-        assert!(!in_words(&report)[0].contains("does not fit"));
     }
 
     #[test]

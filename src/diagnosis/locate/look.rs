@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use super::peak::{Peak, Ridge, SPACING};
 use super::process::Process;
 use super::tangent::{Basis, Cells, Tangent};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::infer::Mixture;
 use crate::mechanism::Extent;
 use crate::model::Posterior;
@@ -102,15 +102,16 @@ impl<'a, 'm> Sought<'a, 'm> {
 
     /// The looks of the whole grid, from likely own parameters: from small
     /// sizes to large ones, where at first the errors explain what the model
-    /// does not, and back, where at first the force does.
+    /// does not, and back, where at first the force does. None where the model
+    /// has no density near these.
     ///
     /// # Errors
-    /// A model that fails, or one that has no density near these.
+    /// A model that fails.
     pub(super) fn looks(&self, own: &[f64], grid: Grid) -> Result<Vec<Look>> {
         let own = DVector::from_column_slice(own);
         let still = DVector::zeros(self.cells.count);
         let none = self.cells.tangent(&self.each(), &still, own)?;
-        let Some(none) = none else { return Err(no_mode()) };
+        let Some(none) = none else { return Ok(Vec::new()) };
         let Grid { lengths, sizes, beyond } = grid;
         let mut found = self.columns(lengths, sizes, &none)?;
         for lengths in beyond {
@@ -121,7 +122,7 @@ impl<'a, 'm> Sought<'a, 'm> {
                 }
             }
         }
-        if found.is_empty() { Err(no_mode()) } else { self.seen(found) }
+        self.seen(found)
     }
 
     /// What is seen from those peaks that hold nearly as much as the best.
@@ -196,10 +197,6 @@ impl<'a, 'm> Sought<'a, 'm> {
     }
 }
 
-fn no_mode() -> Error {
-    Error::inference("no free-form force has a mode")
-}
-
 /// Whether the peaks at a length hold nearly as much as the best.
 fn matters(peaks: &[Peak], length: f64) -> bool {
     let there = peaks.iter().filter(|peak| peak.process.0 == length);
@@ -219,11 +216,8 @@ fn most<'l>(peaks: impl IntoIterator<Item = &'l Peak>) -> f64 {
 }
 
 /// Where the process and the model's parameters are likely, as the looks have
-/// them.
-///
-/// # Errors
-/// Looks without width.
-pub(super) fn proposal(looks: &[Look]) -> Result<Mixture> {
+/// them; `None` where none has a width.
+pub(super) fn proposal(looks: &[Look]) -> Option<Mixture> {
     let best = most(looks.iter().map(|look| &look.peak));
     let parts = looks.iter().filter_map(|Look { peak, .. }| {
         let n = peak.top.line.len();
@@ -238,7 +232,5 @@ pub(super) fn proposal(looks: &[Look]) -> Result<Mixture> {
         let weight = (0.5 * (peak.log_evidence - best)).exp();
         Some((weight, DVector::from_vec(mean), covariance))
     });
-    Mixture::of(parts).ok_or_else(|| {
-        Error::inference("no free-form force has a mode with a width")
-    })
+    Mixture::of(parts)
 }

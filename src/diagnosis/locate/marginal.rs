@@ -4,13 +4,13 @@
 use nalgebra::DVector;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
 
-use super::look::{Look, Sought};
+use super::look::{Look, Sought, proposal};
 use super::peak::Ridge;
 use super::process::Process;
 use super::tangent::{Basis, Tangent, Waves, half_log_det, log_normal};
 use crate::draws::log_sum_exp;
 use crate::error::{Error, Result};
-use crate::infer::nested::{Held, Outer};
+use crate::infer::nested::{Effort, Held, Learned, Outer, learn};
 use crate::infer::{student_constant, systematic};
 use crate::seed::{Rng, Seed};
 
@@ -84,15 +84,24 @@ impl Outer for Marginal<'_, '_> {
 }
 
 impl<'a, 'm> Marginal<'a, 'm> {
-    /// With a force that several events may share.
-    pub(super) fn new(
+    /// With a force that several events may share, and what draws from where
+    /// the looks have it teach; `None` where it has no density there.
+    ///
+    /// # Errors
+    /// A model that fails.
+    pub(super) fn learned(
         sought: Sought<'a, 'm>,
         looks: Vec<Look>,
         shared: bool,
-    ) -> Self {
+        effort: Effort,
+        seed: Seed,
+    ) -> Result<Option<(Self, Learned)>> {
+        let Some(mixture) = proposal(&looks) else { return Ok(None) };
         let heights = looks.iter().map(|look| look.peak.top.height);
         let least = heights.fold(f64::NEG_INFINITY, f64::max) - DEEP;
-        Self { sought, looks, least, shared }
+        let marginal = Self { sought, looks, least, shared };
+        let learned = learn(&marginal, mixture, effort, seed)?;
+        Ok(learned.log.is_finite().then_some((marginal, learned)))
     }
 
     /// The tangent to start from: of the nearest looks the one that promises

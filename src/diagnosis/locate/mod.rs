@@ -20,8 +20,8 @@ mod tangent;
 
 use crate::diagnosis::evidence::fit::{Fit, likeliest};
 use crate::draws::Draws;
-use crate::error::Result;
-use crate::infer::nested::{Effort, integrated, learn};
+use crate::error::{Error, Result};
+use crate::infer::nested::{Effort, integrated};
 use crate::mechanism::{Extent, Mechanism};
 use crate::model::{AnyProgram, Posterior, Program, With};
 use crate::parallel;
@@ -32,7 +32,7 @@ pub(super) use force::Stretch;
 pub use force::{Band, FreeForce};
 use free_form::FreeForm;
 pub(super) use free_form::{FORMULA, NOUN, SAYS};
-use look::{COARSE, FINE, Look, Sought, highest, proposal};
+use look::{COARSE, FINE, Look, Sought, highest};
 use marginal::Marginal;
 pub(crate) use open::{Open, left_open};
 pub use process::CELLS;
@@ -145,9 +145,9 @@ pub(crate) fn outlook(
     }
     let own = highest(&looks)
         .map_or_else(Vec::new, |look| look.peak.top.line.as_slice().to_vec());
-    let mixture = proposal(&looks)?;
-    let marginal = Marginal::new(sought, looks, program.events() > 1);
-    let learned = learn(&marginal, mixture, GLANCE, seed.child(0))?;
+    let (shared, begun) = (program.events() > 1, seed.child(0));
+    let learned = Marginal::learned(sought, looks, shared, GLANCE, begun)?;
+    let (marginal, learned) = learned.ok_or_else(no_density)?;
     let found = integrated(&marginal, &learned, GLANCE, seed.child(1))?;
     Ok(Outlook { log: found.sum.log, own })
 }
@@ -163,17 +163,30 @@ pub(crate) fn left(
     fit: &Fit,
     extent: &Extent,
     seed: Seed,
-) -> Result<FreeForce> {
+) -> Result<Option<FreeForce>> {
     let with = With::new(program, mechanisms);
     let whole = Fit { added: 0, ..fit.clone() };
-    locate(&with, extent, Axis::Place, &whole, seed)
+    along(&with, extent, &[Axis::Place], &whole, seed).map(|mut all| all.pop())
 }
 
-/// The same along several axes; most sharply where the force is likely.
+/// The same along several axes; most sharply where the force is likely. An axis
+/// along which no force has a density is left out.
 ///
 /// # Errors
-/// As [`locate`].
+/// As [`locate`], of all axes.
 pub(crate) fn locate_all(
+    program: &dyn AnyProgram,
+    extent: &Extent,
+    axes: &[Axis],
+    none: &Fit,
+    seed: Seed,
+) -> Result<Vec<FreeForce>> {
+    let forces = along(program, extent, axes, none, seed)?;
+    if forces.is_empty() { Err(no_density()) } else { Ok(forces) }
+}
+
+/// The forces along those axes along which one has a density.
+fn along(
     program: &dyn AnyProgram,
     extent: &Extent,
     axes: &[Axis],
@@ -187,28 +200,31 @@ pub(crate) fn locate_all(
     let posteriors = with.iter().map(|with| Posterior::new(with));
     let posteriors = posteriors.collect::<Result<Vec<_>>>()?;
     let shared = program.events() > 1;
-    let learned =
-        parallel::try_map((0..).zip(&posteriors), |(i, posterior)| {
-            let sought = Sought::of(posterior, extent, CELLS);
-            let looks = sought.looks(none.own(), FINE)?;
-            let mixture = proposal(&looks)?;
-            let marginal = Marginal::new(sought, looks, shared);
-            let seed = seed.child(i).child(0);
-            let learned = learn(&marginal, mixture, EFFORT, seed)?;
-            Ok((marginal, learned))
-        })?;
-    let logs = learned.iter().map(|(_, learned)| learned.log);
+    let each = axes.iter().zip(0..).map(|(axis, i)| (axis, seed.child(i)));
+    let begun = each.zip(&posteriors);
+    let learned = parallel::try_map(begun, |((axis, seed), posterior)| {
+        let sought = Sought::of(posterior, extent, CELLS);
+        let looks = sought.looks(none.own(), FINE)?;
+        let begun = seed.child(0);
+        let found = Marginal::learned(sought, looks, shared, EFFORT, begun)?;
+        Ok(found.map(|(marginal, learned)| (axis, seed, marginal, learned)))
+    })?;
+    let learned: Vec<_> = learned.into_iter().flatten().collect();
+    let logs = learned.iter().map(|(.., learned)| learned.log);
     let best = logs.fold(f64::NEG_INFINITY, f64::max);
-    let each = (0..).zip(&learned).zip(axes);
-    parallel::try_map(each, |((i, (marginal, learned)), axis)| {
+    parallel::try_map(&learned, |(axis, seed, marginal, learned)| {
         let far = learned.log < best - FAR;
         let effort = if far { FEW } else { EFFORT };
-        let seed = seed.child(i);
         let found = integrated(marginal, learned, effort, seed.child(1))?;
-        let looks = marginal.looks.clone();
-        let seed = seed.child(2);
-        Ok(FreeForce::new(extent, *axis, none, &found, looks, seed))
+        let (looks, drawn) = (marginal.looks.clone(), seed.child(2));
+        Ok(FreeForce::new(extent, **axis, none, &found, looks, drawn))
     })
+}
+
+fn no_density() -> Error {
+    Error::inference(
+        "no free-form force has a density near where the model has it without",
+    )
 }
 
 #[cfg(test)]

@@ -12,12 +12,12 @@
 use super::confounded::confounded;
 use super::force::{Band, FreeForce};
 use super::free_form::FreeForm;
-use super::look::{Sought, highest, proposal};
+use super::look::{Sought, highest};
 use super::marginal::Marginal;
 use super::process::CELLS;
 use crate::draws::{Draws, log_sum_exp};
 use crate::error::Result;
-use crate::infer::nested::{Effort, Integral, integrated, learn};
+use crate::infer::nested::{Effort, Integral, integrated};
 use crate::mechanism::Extent;
 use crate::model::{AnyProgram, Posterior, Program, With};
 use crate::seed::Seed;
@@ -34,7 +34,8 @@ pub(crate) struct Open {
     /// The model's own parameters, along each axis as often as the force there
     /// is probable.
     pub(crate) own: Draws,
-    /// The whole force along each axis; `None` where it is improbable.
+    /// The whole force along each axis; `None` where it is improbable, or has
+    /// no density.
     pub(crate) bands: Vec<Option<Band>>,
 }
 
@@ -56,12 +57,15 @@ pub(crate) fn left_open(
     for (i, force) in forces.iter().enumerate() {
         let share = (force.log_bayes_factor - total).exp();
         let count = (share * TOLD as f64).round() as usize;
-        if count == 0 {
+        let seed = seed.child(i as u64);
+        let found = match count {
+            0 => None,
+            _ => whole(program, extent, force, seed)?,
+        };
+        let Some(found) = found else {
             bands.push(None);
             continue;
-        }
-        let seed = seed.child(i as u64);
-        let found = whole(program, extent, force, seed)?;
+        };
         for (z, _) in found.spread(count, seed.child(2)) {
             rows.extend(posterior.natural(&z[2..])?);
         }
@@ -80,13 +84,14 @@ pub(crate) fn left_open(
 }
 
 /// Draws of the process, the model's own parameters and the whole force, from
-/// where the force beside the law is best.
+/// where the force beside the law is best; `None` where it has no density
+/// there.
 fn whole(
     program: &dyn AnyProgram,
     extent: &Extent,
     force: &FreeForce,
     seed: Seed,
-) -> Result<Integral<Vec<Vec<f64>>>> {
+) -> Result<Option<Integral<Vec<Vec<f64>>>>> {
     let form = FreeForm::cells(extent, force.axis, CELLS);
     let with = With::new(program, &[&form]);
     let posterior = Posterior::new(&with)?;
@@ -95,8 +100,11 @@ fn whole(
     let sought = Sought::of(&posterior, extent, CELLS);
     let sought = Sought { besides: besides.as_ref(), ..sought };
     let looks = sought.looks_from(&force.looks)?;
-    let mixture = proposal(&looks)?;
-    let marginal = Marginal::new(sought, looks, program.events() > 1);
-    let learned = learn(&marginal, mixture, EFFORT, seed.child(0))?;
-    integrated(&marginal, &learned, EFFORT, seed.child(1))
+    let (shared, begun) = (program.events() > 1, seed.child(0));
+    let learned = Marginal::learned(sought, looks, shared, EFFORT, begun)?;
+    learned
+        .map(|(marginal, learned)| {
+            integrated(&marginal, &learned, EFFORT, seed.child(1))
+        })
+        .transpose()
 }
