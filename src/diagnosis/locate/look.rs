@@ -73,7 +73,7 @@ impl<'a, 'm> Sought<'a, 'm> {
     }
 
     /// What makes a process's force of standard normal waves.
-    pub(super) fn basis(&self, process: &Process) -> Basis {
+    fn basis(&self, process: &Process) -> Basis {
         let factor = process.factor(self.extent, self.cells.count);
         let own = self.cells.own();
         let Some(besides) = self.besides else {
@@ -92,10 +92,9 @@ impl<'a, 'm> Sought<'a, 'm> {
     /// A model that fails.
     pub(super) fn looks_from(&self, others: &[Look]) -> Result<Vec<Look>> {
         let peaks = parallel::try_map(others, |other| {
-            let process = other.peak.process;
-            let basis = self.basis(&process);
-            let from = other.tangent.along(&basis);
-            Peak::climbed(&self.ridge(basis), process, &from)
+            let ridge = self.ridge(other.peak.process);
+            let from = other.tangent.along(&ridge.basis);
+            Peak::climbed(&ridge, &from)
         })?;
         self.seen(peaks.into_iter().flatten().collect())
     }
@@ -143,8 +142,10 @@ impl<'a, 'm> Sought<'a, 'm> {
         Basis::cells(self.cells.count, self.cells.own())
     }
 
-    fn ridge(&self, basis: Basis) -> Ridge<'a, 'm> {
-        Ridge { cells: self.cells, basis, least: f64::NEG_INFINITY }
+    /// The density under a process, all of which counts.
+    pub(super) fn ridge(&self, process: Process) -> Ridge<'a, 'm> {
+        let basis = self.basis(&process);
+        Ridge { cells: self.cells, process, basis, least: f64::NEG_INFINITY }
     }
 
     /// The peaks at some lengths, from both sides.
@@ -174,16 +175,15 @@ impl<'a, 'm> Sought<'a, 'm> {
         let mut found: Vec<Peak> = Vec::new();
         for &size in sizes {
             let process = Process(length, size);
-            let basis = self.basis(&process);
+            let ridge = self.ridge(process);
             let from = match found.last() {
                 // Waves of one length differ in their size alone.
                 Some(Peak { process: before, tangent, .. }) => {
                     tangent.scaled(process.size() / before.size())
                 }
-                None => none.along(&basis),
+                None => none.along(&ridge.basis),
             };
-            let ridge = self.ridge(basis);
-            let Some(peak) = Peak::climbed(&ridge, process, &from)? else {
+            let Some(peak) = Peak::climbed(&ridge, &from)? else {
                 continue;
             };
             let alike =

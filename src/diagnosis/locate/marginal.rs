@@ -7,7 +7,7 @@ use rand_distr::{ChiSquared, Distribution, StandardNormal};
 use super::look::{Look, Sought, proposal};
 use super::peak::Ridge;
 use super::process::Process;
-use super::tangent::{Basis, Tangent, Waves, half_log_det, log_normal};
+use super::tangent::{Tangent, Waves, half_log_det, log_normal};
 use crate::draws::log_sum_exp;
 use crate::error::{Error, Result};
 use crate::infer::nested::{Effort, Held, Learned, Outer, learn};
@@ -53,11 +53,10 @@ impl Outer for Marginal<'_, '_> {
         let (process, own) = Process::parted(z);
         let own = DVector::from_column_slice(own);
         let ridge = Ridge {
-            cells: self.sought.cells,
-            basis: self.sought.basis(&process),
             least: self.least - process.log_prior(),
+            ..self.sought.ridge(process)
         };
-        let Some(from) = self.start(&process, &own, &ridge.basis) else {
+        let Some(from) = self.start(&ridge, &own) else {
             return Ok(Held::nothing());
         };
         let Some(mut best) = ridge.best(&own, &from)? else {
@@ -108,17 +107,16 @@ impl<'a, 'm> Marginal<'a, 'm> {
     /// most.
     fn start(
         &self,
-        process: &Process,
+        ridge: &Ridge<'_, '_>,
         own: &DVector<f64>,
-        basis: &Basis,
     ) -> Option<Tangent> {
-        let off = |look: &Look| look.peak.distance(process, own);
+        let off = |look: &Look| look.peak.distance(&ridge.process, own);
         let mut near: Vec<(f64, &Look)> =
             self.looks.iter().map(|look| (off(look), look)).collect();
         near.sort_by(|a, b| a.0.total_cmp(&b.0));
         let nearest = near.into_iter().take(NEAREST);
         let promising = nearest.map(|(_, look)| {
-            let tangent = look.tangent.along(basis);
+            let tangent = look.tangent.along(&ridge.basis);
             let height = tangent.waves(own).map(|w| tangent.height(&w));
             (height.unwrap_or(f64::NEG_INFINITY), tangent)
         });

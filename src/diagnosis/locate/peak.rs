@@ -42,11 +42,10 @@ pub(in crate::diagnosis) struct Peak {
 }
 
 impl Peak {
-    /// The one at a process that own parameters and a tangent along its waves
-    /// lead to; `None` where the start has no density, or the peak no width.
+    /// The one that a tangent along the process's waves leads to; `None` where
+    /// the start has no density, or the peak no width.
     pub(super) fn climbed(
         ridge: &Ridge<'_, '_>,
-        process: Process,
         from: &Tangent,
     ) -> Result<Option<Self>> {
         let own = from.own.clone();
@@ -57,18 +56,18 @@ impl Peak {
         let found =
             CLIMB.ascend(ridge, (own, slope, tangent), |_, _| false)?;
         let Some((own, slope, tangent)) = found else { return Ok(None) };
-        Ok(Self::of(ridge, process, own, slope, tangent))
+        Ok(Self::of(ridge, own, slope, tangent))
     }
 
     /// The one that a climb came to; `None` where it has no width.
     fn of(
         ridge: &Ridge<'_, '_>,
-        process: Process,
         own: DVector<f64>,
         slope: Slope,
         tangent: Tangent,
     ) -> Option<Self> {
         let Slope { height: promised, precision, .. } = slope;
+        let process = ridge.process;
         let waves = tangent.waves(&own)?;
         let sure = tangent.height_of(&tangent.at, &waves.precision);
         let height = promised.min(sure + FURTHEST) + process.log_prior();
@@ -92,6 +91,8 @@ impl Peak {
 /// The density of the own parameters under one process, the force integrated.
 pub(super) struct Ridge<'a, 'm> {
     pub(super) cells: Cells<'a, 'm>,
+    pub(super) process: Process,
+    /// What makes the process's force of its waves.
     pub(super) basis: Basis,
     /// ln of a density below which nothing counts.
     pub(super) least: f64,
