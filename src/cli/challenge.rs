@@ -107,7 +107,8 @@ impl Arguments {
     ) -> Result<Scored> {
         let all_of = if self.quick { QUICK_SECONDS } else { SECONDS };
         let each = all_of[usize::from(self.recordings == 2)];
-        let pace = Pace::begun(all.len(), each, told);
+        let answered = kept.map_or(0, Checkpoint::parts);
+        let pace = Pace::begun(all.len(), answered, each, told);
         let heard = Resumed { heard: &pace, checkpoint: kept };
         let answer = |case: &Case| answer(case, self.seed, self.quick);
         let scored = run(all, &answer, true, &heard);

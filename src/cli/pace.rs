@@ -13,20 +13,29 @@ pub(super) struct Pace<'t> {
     told: &'t Told,
     begun: Instant,
     cases: u64,
+    /// Of which an earlier run has answered so many.
+    kept: u64,
     done: AtomicU64,
     /// After how many cases the time is told as it was measured.
     measured_at: u64,
 }
 
 impl<'t> Pace<'t> {
-    /// Says what there is to do, at so many seconds a case on one processor.
-    pub(super) fn begun(cases: usize, each: f64, told: &'t Told) -> Self {
+    /// Says what there is to do of some cases, of which an earlier run has kept
+    /// so many, at so many seconds a case on one processor.
+    pub(super) fn begun(
+        cases: usize,
+        kept: usize,
+        each: f64,
+        told: &'t Told,
+    ) -> Self {
         let threads = rayon::current_num_threads();
-        let seconds = each * cases.div_ceil(threads) as f64;
+        let left = cases.saturating_sub(kept);
+        let seconds = each * left.div_ceil(threads) as f64;
         told.say(&format!(
             "{} to diagnose on {}, at about {each:.0} s each on one that is \
              free: about {}",
-            plural(cases, "case"),
+            plural(left, "case"),
             plural(threads, "processor"),
             duration(seconds)
         ));
@@ -34,8 +43,9 @@ impl<'t> Pace<'t> {
             told,
             begun: Instant::now(),
             cases: cases as u64,
+            kept: kept as u64,
             done: AtomicU64::new(0),
-            measured_at: 2 * threads as u64,
+            measured_at: (kept + 2 * threads) as u64,
         }
     }
 }
@@ -54,7 +64,8 @@ impl Progress for Pace<'_> {
             return;
         }
         let spent = self.begun.elapsed().as_secs_f64();
-        let left = spent / done as f64 * (self.cases - done) as f64;
+        let left =
+            spent / (done - self.kept) as f64 * (self.cases - done) as f64;
         self.told.say(&format!(
             "{done} of {} done in {}: about {} more",
             plural(self.cases as usize, "case"),

@@ -109,7 +109,7 @@ fn warn(k: f64, effective: f64, n: f64) -> Vec<String> {
     let mut warnings = Vec::new();
     if k > POOR {
         warnings.push(format!(
-            "the importance weights have a heavy tail (Pareto k = {k:.2}, \
+            "the importance weights have a heavy tail (Pareto k = {k:.3}, \
              above {POOR}): evidence and its error cannot be trusted; \
              `couloir compare` has the backend smc, which tempers"
         ));

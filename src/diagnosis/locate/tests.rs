@@ -299,3 +299,18 @@ fn the_free_force_is_what_linear_algebra_says() {
         }
     }
 }
+
+#[test]
+fn where_no_force_has_a_density_none_is_left() {
+    let program = pushed();
+    let extent = program.0.extent();
+    let mut none =
+        fit(&program, &[], &LaplaceMixture::default(), Seed::new(1)).unwrap();
+    none.best = vec![f64::NAN];
+    let axes = [Axis::Place, Axis::Time];
+    let all = locate_all(&program, &extent, &axes, &none, Seed::new(1));
+    let said = all.unwrap_err().to_string();
+    assert!(said.contains("no free-form force has a density"), "{said}");
+    let rest = left(&program, &[], &none, &extent, Seed::new(1)).unwrap();
+    assert!(rest.is_none());
+}
