@@ -33,14 +33,19 @@ pub(crate) fn judged_noises(
 ) -> Result<Vec<JudgedNoise>> {
     let total = log_sum_exp(logs.iter().copied());
     let named = table.as_it_was()?;
-    let place = table.named();
+    let of_named = match table.named() {
+        Some(place) => logs[place],
+        // It was dropped: about as far below the best as it was then.
+        None => {
+            let best = taken(None, logs);
+            let above = table.rows[best].noisy.either_way();
+            logs[best] - (above - named.either_way())
+        }
+    };
     let mut all = Vec::new();
     for (row, log) in table.rows.iter().zip(logs) {
         let form = Form::of(&row.noisy.name);
-        let gain = match place {
-            Some(place) => log - logs[place],
-            None => row.noisy.either_way() - named.either_way(),
-        };
+        let gain = log - of_named;
         all.push(JudgedNoise {
             name: row.noisy.name.clone(),
             has_tails: form.has_tails,

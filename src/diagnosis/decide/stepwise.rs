@@ -14,7 +14,7 @@ use std::f64::consts::LN_10;
 use crate::diagnosis::decide::chosen::Chosen;
 use crate::diagnosis::decide::judge::Beforehand;
 use crate::diagnosis::evidence::attribute::Attribution;
-use crate::diagnosis::evidence::carried::gain;
+use crate::diagnosis::evidence::carried::Move;
 use crate::diagnosis::evidence::combination::{Combination, Known, Pursued};
 use crate::diagnosis::evidence::noises::{NEAR, Noisy};
 use crate::draws::log_sum_exp;
@@ -256,7 +256,8 @@ impl<'a> Stepwise<'a> {
         let mut gains = vec![0.0];
         for noisy in self.elsewhere {
             let to = (noisy.program(), noisy.own());
-            gains.push(gain(from, to, &mechanisms, self.seed.child(1))?);
+            let there = Move { from, to, mechanisms: &mechanisms };
+            gains.push(there.gain(self.seed.child(1))?);
         }
         Ok(log_sum_exp(gains.into_iter()))
     }

@@ -1,38 +1,75 @@
 //! From one noise to another: what evidences gain there.
 
-use crate::diagnosis::evidence::fit::Fit;
+use crate::diagnosis::evidence::fit::{Fit, prospect};
 use crate::error::Result;
-use crate::infer::{LaplaceMixture, SearchSpace};
+use crate::infer::{LaplaceMixture, Precision, SearchSpace};
 use crate::mechanism::Mechanism;
 use crate::model::{AnyProgram, Posterior, With};
 use crate::seed::Seed;
 
-/// By how much more, in ln, normal approximations of the peaks promise of a
-/// model with mechanisms under another noise: from draws where it is likely
-/// under the first one, with what only the second has at some places.
-///
-/// # Errors
-/// A model that fails.
-pub(crate) fn gain(
-    (from, fit): (&dyn AnyProgram, &Fit),
-    (to, owns): (&dyn AnyProgram, [&[f64]; 2]),
-    mechanisms: &[&dyn Mechanism],
-    seed: Seed,
-) -> Result<f64> {
-    let (old, new) = (With::new(from, mechanisms), With::new(to, mechanisms));
-    let (old, new) = (Posterior::new(&old)?, Posterior::new(&new)?);
-    let drawn = fit.draws.thinned(CARRIED).into_iter();
-    let drawn = drawn.map(|row| old.line(row));
-    let drawn = drawn.collect::<Result<Vec<_>>>()?;
-    let owns = owns.map(|own| (fit.added, own));
-    let starts = carried(&old, &drawn, &new, &owns);
-    let log = |posterior: &Posterior<'_>, starts: Vec<Vec<f64>>| {
-        let space = SearchSpace { starts, ..SearchSpace::default() };
-        LaplaceMixture::within(space).outlook(posterior, seed)
-    };
-    let gain = log(&new, starts)? - log(&old, drawn)?;
-    // Where no climb arrives nothing is promised.
-    Ok(if gain.is_finite() { gain } else { f64::NEG_INFINITY })
+/// A model with mechanisms, fitted under one noise, that is moved to another.
+pub(crate) struct Move<'a> {
+    pub(crate) from: (&'a dyn AnyProgram, &'a Fit),
+    /// The model under the second noise, with what only that has at some places.
+    pub(crate) to: (&'a dyn AnyProgram, [&'a [f64]; 2]),
+    pub(crate) mechanisms: &'a [&'a dyn Mechanism],
+}
+
+impl Move<'_> {
+    /// By how much more, in ln, normal approximations of the peaks promise under
+    /// the second noise, from draws where it is likely under the first.
+    ///
+    /// # Errors
+    /// A model that fails.
+    pub(crate) fn gain(&self, seed: Seed) -> Result<f64> {
+        let old = With::new(self.from.0, self.mechanisms);
+        let new = With::new(self.to.0, self.mechanisms);
+        let (old, new) = (Posterior::new(&old)?, Posterior::new(&new)?);
+        let drawn = self.drawn(&old)?;
+        let starts = self.carried(&old, &drawn, &new);
+        let log = |posterior: &Posterior<'_>, starts| {
+            beginning_at(starts).outlook(posterior, seed)
+        };
+        let gain = log(&new, starts)? - log(&old, drawn)?;
+        // Where no climb arrives nothing is promised.
+        Ok(if gain.is_finite() { gain } else { f64::NEG_INFINITY })
+    }
+
+    /// ln of the evidence under the second noise, sought from there.
+    ///
+    /// # Errors
+    /// A model that fails.
+    pub(super) fn estimated(&self, seed: Seed) -> Result<f64> {
+        let old = With::new(self.from.0, self.mechanisms);
+        let new = With::new(self.to.0, self.mechanisms);
+        let (old, new) = (Posterior::new(&old)?, Posterior::new(&new)?);
+        let starts = self.carried(&old, &self.drawn(&old)?, &new);
+        let (to, with) = (self.to.0, self.mechanisms);
+        let backend = beginning_at(starts).quick();
+        let found = prospect(to, with, backend, seed.child(0))?;
+        let fit = found.fit(to, with, Precision::Fair, seed.child(1))?;
+        Ok(fit.log_evidence)
+    }
+
+    /// Draws under the first noise, on the real line.
+    fn drawn(&self, old: &Posterior<'_>) -> Result<Vec<Vec<f64>>> {
+        let rows = self.from.1.draws.thinned(CARRIED).into_iter();
+        rows.map(|row| old.line(row)).collect()
+    }
+
+    fn carried(
+        &self,
+        old: &Posterior<'_>,
+        drawn: &[Vec<f64>],
+        new: &Posterior<'_>,
+    ) -> Vec<Vec<f64>> {
+        let owns = self.to.1.map(|own| (self.from.1.added, own));
+        carried(old, drawn, new, &owns)
+    }
+}
+
+fn beginning_at(starts: Vec<Vec<f64>>) -> LaplaceMixture {
+    LaplaceMixture::within(SearchSpace { starts, ..SearchSpace::default() })
 }
 
 /// Where a model with mechanisms is likeliest under one noise, as places under

@@ -1,13 +1,18 @@
 //! The two-way table: every mechanism under every noise that is kept.
 
 use super::attribute::{Attribution, Care, Known, attribute_beside};
-use super::carried::{gain, likeliest};
+use super::carried::{Move, likeliest};
 use super::noises::{Noises, Noisy};
 use crate::error::{Error, Result};
 use crate::infer::Progress;
 use crate::mechanism::{Extent, Mechanism};
 use crate::parallel;
 use crate::seed::Seed;
+
+/// How far below the best, in ln, what another noise promises of a mechanism is
+/// estimated: as far as names are told of together, a tenth, and by as much as
+/// what is promised may be off, 2.
+const CLOSE: f64 = 4.3;
 
 /// What the evidence says under one noise.
 #[derive(Debug)]
@@ -164,7 +169,8 @@ impl<'a> Row<'a> {
     }
 
     /// With the evidences of another row, each more by as much as the normal
-    /// approximations about the likeliest draws there promise more.
+    /// approximations about the likeliest draws there promise more; those that
+    /// may matter beside the best are estimated from there.
     fn beside(
         noisy: Noisy<'a>,
         first: &Self,
@@ -172,16 +178,34 @@ impl<'a> Row<'a> {
         seed: Seed,
     ) -> Result<Self> {
         let found = first.found()?;
-        let from = first.noisy.program();
-        let to = (noisy.program(), noisy.own());
-        let fits = catalogue.iter().zip(&found.candidates);
-        let gains = parallel::try_map(fits, |(mechanism, fit)| {
-            gain((from, fit), to, &[mechanism.as_ref()], seed)
+        let alone: Vec<[&dyn Mechanism; 1]> =
+            catalogue.iter().map(|mechanism| [mechanism.as_ref()]).collect();
+        let of = |at: usize| Move {
+            from: (first.noisy.program(), &found.candidates[at]),
+            to: (noisy.program(), noisy.own()),
+            mechanisms: &alone[at],
+        };
+        let promised = parallel::try_map(0..catalogue.len(), |at| {
+            Ok(first.candidates[at] + of(at).gain(seed)?)
         })?;
-        let known = first.candidates.iter().zip(gains);
-        let candidates = known.map(|(known, gain)| known + gain).collect();
+        let known = [first.highest(), noisy.none.log_evidence];
+        let best = promised.iter().copied().chain(known);
+        let least = best.fold(f64::NEG_INFINITY, f64::max) - CLOSE;
+        let each = promised.into_iter().enumerate();
+        let candidates = parallel::try_map(each, |(at, promised)| {
+            match promised > least {
+                true => of(at).estimated(seed.child(1 + at as u64)),
+                false => Ok(promised),
+            }
+        })?;
         let open = first.open + noisy.open.log - first.noisy.open.log;
         Ok(Self { noisy, candidates, open, found: None })
+    }
+
+    /// The most evidence of any, in ln, and of the model alone.
+    fn highest(&self) -> f64 {
+        let none = self.noisy.none.log_evidence;
+        self.candidates.iter().copied().fold(none, f64::max)
     }
 
     /// All fits.

@@ -1,0 +1,35 @@
+"""What the answers of a challenge state, against how many are right.
+
+    python3 docs/challenge_stated.py challenge/challenge.json
+
+Of effects that have one name as their answer: those on the errors are scored by
+the noises, two others by their group, and four are in no catalogue.
+"""
+
+import json
+import pathlib
+import sys
+
+OTHERWISE = {
+    "ar1", "heavy-tails", "unequal-variance", "slope-bias", "averaging-window",
+    "none", "cubic-drag", "periodic-force", "late-friction", "wall-drag",
+}
+VISIBLE = 8  # ln: what shows an effect at all
+
+
+def said(name, answers):
+    right = sum(a["answer"] == a["truth"] for a in answers) / len(answers)
+    stated = sum(a["probability"] for a in answers) / len(answers)
+    print(f"{name}: {right:.2f} of {len(answers)} right, {stated:.2f} stated")
+
+
+def main():
+    scored = json.loads(pathlib.Path(sys.argv[1]).read_text())
+    names = set(scored["effects"]) - OTHERWISE
+    hidden = [a for a in scored["answers"] if a["truth"] in names]
+    said("all", hidden)
+    said("that gain 8", [a for a in hidden if a["gain"] >= VISIBLE])
+
+
+if __name__ == "__main__":
+    main()
