@@ -73,7 +73,7 @@ impl<'a, 'm> Sought<'a, 'm> {
     }
 
     /// What makes a process's force of standard normal waves.
-    fn basis(&self, process: &Process) -> Basis {
+    pub(super) fn basis(&self, process: &Process) -> Basis {
         let factor = process.factor(self.extent, self.cells.count);
         let own = self.cells.own();
         let Some(besides) = self.besides else {
