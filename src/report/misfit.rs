@@ -19,7 +19,12 @@ const CHANCE: f64 = 1e-3;
 const STRONG: f64 = 1.0;
 
 /// Why the model does not fit, in a sentence; `None` where nothing says so.
-pub(crate) fn misfit(report: &CalibrationReport) -> Option<String> {
+///
+/// ```
+/// use couloir::report::{CalibrationReport, misfit};
+/// assert_eq!(misfit(&CalibrationReport::default()), None);
+/// ```
+pub fn misfit(report: &CalibrationReport) -> Option<String> {
     let reason = swallowed(report)
         .or_else(|| forced(report))
         .or_else(|| correlated(report))?;

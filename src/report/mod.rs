@@ -25,7 +25,7 @@ pub use crate::predict::{Bands, Statistic};
 pub use json::calibration_json;
 pub(crate) use json::noise_json;
 pub use law::LawReport;
-pub(crate) use misfit::misfit;
+pub use misfit::misfit;
 pub use noises::{NoiseReport, noises};
 pub(crate) use noises::{NoiseRow, noise_lines};
 pub use origin::Origin;
