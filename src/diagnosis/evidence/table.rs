@@ -170,7 +170,8 @@ impl<'a> Row<'a> {
 
     /// With the evidences of another row, each more by as much as the normal
     /// approximations about the likeliest draws there promise more; those that
-    /// may matter beside the best are estimated from there.
+    /// may matter beside the best are estimated from there. Not of several
+    /// events, where an estimate costs as much as a fit.
     fn beside(
         noisy: Noisy<'a>,
         first: &Self,
@@ -190,7 +191,10 @@ impl<'a> Row<'a> {
         })?;
         let known = [first.highest(), noisy.none.log_evidence];
         let best = promised.iter().copied().chain(known);
-        let least = best.fold(f64::NEG_INFINITY, f64::max) - CLOSE;
+        let least = match noisy.program().events() {
+            1 => best.fold(f64::NEG_INFINITY, f64::max) - CLOSE,
+            _ => f64::INFINITY,
+        };
         let each = promised.into_iter().enumerate();
         let candidates = parallel::try_map(each, |(at, promised)| {
             match promised > least {
