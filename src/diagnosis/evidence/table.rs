@@ -6,6 +6,7 @@ use super::noises::{Noises, Noisy};
 use crate::error::{Error, Result};
 use crate::infer::Progress;
 use crate::mechanism::{Extent, Mechanism};
+use crate::model::Program;
 use crate::parallel;
 use crate::seed::Seed;
 
