@@ -22,17 +22,16 @@ impl Move<'_> {
     /// # Errors
     /// A model that fails.
     pub(crate) fn gain(&self, seed: Seed) -> Result<f64> {
-        let old = With::new(self.from.0, self.mechanisms);
-        let new = With::new(self.to.0, self.mechanisms);
-        let (old, new) = (Posterior::new(&old)?, Posterior::new(&new)?);
-        let drawn = self.drawn(&old)?;
-        let starts = self.carried(&old, &drawn, &new);
-        let log = |posterior: &Posterior<'_>, starts| {
-            beginning_at(starts).outlook(posterior, seed)
-        };
-        let gain = log(&new, starts)? - log(&old, drawn)?;
-        // Where no climb arrives nothing is promised.
-        Ok(if gain.is_finite() { gain } else { f64::NEG_INFINITY })
+        self.between(|old, new| {
+            let drawn = self.drawn(old)?;
+            let starts = self.carried(old, &drawn, new);
+            let log = |posterior: &Posterior<'_>, starts| {
+                beginning_at(starts).outlook(posterior, seed)
+            };
+            let gain = log(new, starts)? - log(old, drawn)?;
+            // Where no climb arrives nothing is promised.
+            Ok(if gain.is_finite() { gain } else { f64::NEG_INFINITY })
+        })
     }
 
     /// ln of the evidence under the second noise, sought from there.
@@ -40,15 +39,33 @@ impl Move<'_> {
     /// # Errors
     /// A model that fails.
     pub(super) fn estimated(&self, seed: Seed) -> Result<f64> {
-        let old = With::new(self.from.0, self.mechanisms);
-        let new = With::new(self.to.0, self.mechanisms);
-        let (old, new) = (Posterior::new(&old)?, Posterior::new(&new)?);
-        let starts = self.carried(&old, &self.drawn(&old)?, &new);
+        let starts = self.between(|old, new| {
+            Ok(self.carried(old, &self.drawn(old)?, new))
+        })?;
         let (to, with) = (self.to.0, self.mechanisms);
         let backend = beginning_at(starts).quick();
         let found = prospect(to, with, backend, seed.child(0))?;
         let fit = found.fit(to, with, Precision::Fair, seed.child(1))?;
         Ok(fit.log_evidence)
+    }
+
+    /// Where it is likeliest under the first noise, as places under the second.
+    ///
+    /// # Errors
+    /// A model that fails.
+    pub(super) fn likeliest(&self) -> Result<Vec<Vec<f64>>> {
+        let best = std::slice::from_ref(&self.from.1.best);
+        self.between(|old, new| Ok(self.carried(old, best, new)))
+    }
+
+    /// What follows from its posteriors under both noises.
+    fn between<T>(
+        &self,
+        of: impl FnOnce(&Posterior<'_>, &Posterior<'_>) -> Result<T>,
+    ) -> Result<T> {
+        let old = With::new(self.from.0, self.mechanisms);
+        let new = With::new(self.to.0, self.mechanisms);
+        of(&Posterior::new(&old)?, &Posterior::new(&new)?)
     }
 
     /// Draws under the first noise, on the real line.
@@ -60,32 +77,16 @@ impl Move<'_> {
     fn carried(
         &self,
         old: &Posterior<'_>,
-        drawn: &[Vec<f64>],
+        lines: &[Vec<f64>],
         new: &Posterior<'_>,
     ) -> Vec<Vec<f64>> {
         let owns = self.to.1.map(|own| (self.from.1.added, own));
-        carried(old, drawn, new, &owns)
+        carried(old, lines, new, &owns)
     }
 }
 
 fn beginning_at(starts: Vec<Vec<f64>>) -> LaplaceMixture {
     LaplaceMixture::within(SearchSpace { starts, ..SearchSpace::default() })
-}
-
-/// Where a model with mechanisms is likeliest under one noise, as places under
-/// another, with what only the second has at some places.
-///
-/// # Errors
-/// A model that fails.
-pub(crate) fn likeliest(
-    (from, fit): (&dyn AnyProgram, &Fit),
-    (to, owns): (&dyn AnyProgram, [&[f64]; 2]),
-    mechanisms: &[&dyn Mechanism],
-) -> Result<Vec<Vec<f64>>> {
-    let (old, new) = (With::new(from, mechanisms), With::new(to, mechanisms));
-    let (old, new) = (Posterior::new(&old)?, Posterior::new(&new)?);
-    let owns = owns.map(|own| (fit.added, own));
-    Ok(carried(&old, std::slice::from_ref(&fit.best), &new, &owns))
 }
 
 /// From how many draws under one noise climbs start under the next.

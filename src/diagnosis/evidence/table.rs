@@ -1,7 +1,7 @@
 //! The two-way table: every mechanism under every noise that is kept.
 
 use super::attribute::{Attribution, Care, Known, attribute_beside};
-use super::carried::{Move, likeliest};
+use super::carried::Move;
 use super::noises::{Noises, Noisy};
 use crate::error::{Error, Result};
 use crate::infer::Progress;
@@ -119,9 +119,12 @@ impl<'a> Table<'a> {
             let Some(found) = &from.found else { continue };
             let each = catalogue.iter().zip(&found.candidates);
             for (known, (mechanism, fit)) in known.iter_mut().zip(each) {
-                let from = (from.noisy.program(), fit);
-                let to = (to.noisy.program(), to.noisy.own());
-                known.extend(likeliest(from, to, &[mechanism.as_ref()])?);
+                let moved = Move {
+                    from: (from.noisy.program(), fit),
+                    to: (to.noisy.program(), to.noisy.own()),
+                    mechanisms: &[mechanism.as_ref()],
+                };
+                known.extend(moved.likeliest()?);
             }
         }
         Ok(Some(known))
