@@ -1,9 +1,11 @@
 //! Derivatives of all data along all directions, which are coordinates unless
 //! others are asked for.
 
+use std::array;
+
 use nalgebra::{DMatrix, DVector};
 
-use crate::scalar::{Forward, Real};
+use crate::scalar::{Forward, Real, fused};
 
 /// How many coordinates are held together: a square of so many sums stays in
 /// registers.
@@ -99,15 +101,16 @@ impl Jacobian {
         product
     }
 
+    /// Kept out of line, where the compiler holds the square in registers.
+    #[inline(never)]
     fn block(&self, top: usize, left: usize) -> [[f64; BLOCK]; BLOCK] {
         let mut sums = [[0.0; BLOCK]; BLOCK];
         for column in self.blocks.chunks_exact(self.width) {
-            let (down, across) = (&column[top], &column[left]);
-            for i in 0..BLOCK {
-                for j in 0..BLOCK {
-                    sums[i][j] += down[i] * across[j];
-                }
-            }
+            let (down, across) = (column[top], column[left]);
+            let with = |sums: [f64; BLOCK], by: f64| {
+                array::from_fn(|j| fused(by, across[j], sums[j]))
+            };
+            sums = array::from_fn(|i| with(sums[i], down[i]));
         }
         sums
     }

@@ -13,7 +13,7 @@ use rand_distr::{Distribution, StandardNormal, StudentT};
 
 use self::even::Even;
 use self::kalman::Kalman;
-use self::state::Follows;
+use self::state::{Expected, Follows};
 use super::gaussian::Gaussian;
 use super::like::noise_like;
 use super::part::{Lapse, MOST_STATES, Part, Whole};
@@ -39,19 +39,10 @@ struct Innovation<K: Kind> {
     /// Its variance, and one over that.
     variance: Real<K>,
     precision: Real<K>,
+    /// Whether that is the variance of the value before.
+    is_same: bool,
     /// The logarithm of the value's size.
     log_size: Option<Real<K>>,
-}
-
-impl<K: Kind> Innovation<K> {
-    /// The same value's law with what its size takes off the density.
-    fn sized(&self, mut value: Conditional<K>) -> Conditional<K> {
-        if let Some(log_size) = self.log_size {
-            value.log_density -= log_size;
-            value.informing.size += log_size;
-        }
-        value
-    }
 }
 
 /// The sum of logarithms, by that of the product as far as a number holds it.
@@ -141,6 +132,7 @@ impl<K: Kind> Whole<'_, K> {
     ) -> Result<(), Stop> {
         let errors = at.standard_errors();
         let white = self.white();
+        let mut precision = Real::new(f64::NAN);
         for i in 0..at.len() {
             let log_size = self.log_size(at, i);
             let over = log_size.map(|log| (-log).exp());
@@ -150,23 +142,31 @@ impl<K: Kind> Whole<'_, K> {
                 None => white + known,
             };
             let expected = filter.expect(Lapse::before(at, i), own);
-            let variance = expected.variance;
+            let Expected { mean, variance, is_same } = expected;
             if variance <= 0.0 || variance.value().is_nan() {
                 return Err(Stop::Reject("a value has no error of its own"));
             }
             let error = match &mut residuals {
                 Residuals::Seen(all) => {
-                    over.map_or(all[i], |over| all[i] * over) - expected.mean
+                    over.map_or(all[i], |over| all[i] * over) - mean
                 }
                 Residuals::Drawn(rng, drawn) => {
                     let error = variance.value().sqrt() * self.deviate(rng)?;
                     let size = log_size.map_or(1.0, |log| log.value().exp());
-                    drawn.push((expected.mean.value() + error) * size);
+                    drawn.push((mean.value() + error) * size);
                     Real::new(error)
                 }
             };
-            let precision = 1.0 / variance;
-            visit(&Innovation { error, variance, precision, log_size });
+            if !is_same {
+                precision = 1.0 / variance;
+            }
+            visit(&Innovation {
+                error,
+                variance,
+                precision,
+                is_same,
+                log_size,
+            });
             filter.learn(error, precision);
         }
         Ok(())
@@ -198,14 +198,20 @@ impl<K: Kind> Noise<K> for Whole<'_, K> {
         one_per_time(at, residuals)?;
         let seen = Residuals::Seen(residuals);
         let Some(nu) = self.tails() else {
+            let mut law = Gaussian::new(Real::new(1.0));
             return self.shown(at, seen, &mut |next| {
-                let law = Gaussian::new(next.variance);
-                visit(next.sized(law.at(next.error)));
+                if !next.is_same {
+                    law = Gaussian::new(next.variance);
+                }
+                visit(law.sized(next.error, next.log_size));
             });
         };
         let (peak, known) = (log_peak(nu), Known::of(nu.value()));
+        let mut law = Law::new(nu, peak, Real::new(1.0));
         self.shown(at, seen, &mut |next| {
-            let law = Law::new(nu, peak, next.variance);
+            if !next.is_same {
+                law = Law::new(nu, peak, next.variance);
+            }
             visit(law.at(next.error, next.log_size, &known));
         })
     }

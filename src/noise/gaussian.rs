@@ -30,6 +30,21 @@ impl<K: Kind> Gaussian<K> {
         Conditional::new(log_density, r * self.inverse_sd)
     }
 
+    /// One value over its size.
+    #[inline(always)]
+    pub(crate) fn sized(
+        &self,
+        r: Real<K>,
+        log_size: Option<Real<K>>,
+    ) -> Conditional<K> {
+        let mut value = self.at(r);
+        if let Some(log_size) = log_size {
+            value.log_density -= log_size;
+            value.informing.size += log_size;
+        }
+        value
+    }
+
     /// The log density of `count` independent values with that sum of
     /// squares.
     #[inline]

@@ -80,6 +80,7 @@ pub(crate) struct Informing<K: Kind> {
 impl<K: Kind> Conditional<K> {
     /// A residual whose law is normal in the deviate d, or about so: with its
     /// scale s, ln p = -d^2/2 - ln s and a constant.
+    #[inline(always)]
     pub fn new(log_density: Real<K>, deviate: Real<K>) -> Self {
         let size = -log_density - 0.5 * deviate * deviate;
         let informing = Informing { place: deviate, size, shape: None };

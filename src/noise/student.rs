@@ -181,7 +181,7 @@ impl<K: Kind> Law<K> {
     ///
     /// A value far out tells the less of its place the farther out it is: in
     /// proportion to (dof + 1)/(dof + d^2), which is 1 on average.
-    #[inline]
+    #[inline(always)]
     pub(super) fn at(
         &self,
         r: Real<K>,
@@ -203,7 +203,7 @@ impl<K: Kind> Law<K> {
         Conditional { log_density, deviate, informing }
     }
 
-    #[inline]
+    #[inline(always)]
     fn log_density(&self, r: Real<K>) -> Real<K> {
         self.constant - self.power * (r * r * self.precision).ln_1p()
     }

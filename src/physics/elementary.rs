@@ -116,6 +116,9 @@ const LNC_SLOPE: [f64; 10] = derivative(&LNC);
 #[inline(always)]
 pub(crate) fn tanhc<K: Kind>(z: Real<K>) -> Real<K> {
     let x = z.value();
+    if x.abs() < 3e-3 {
+        return z.chain(polynomial(x, &TANHC), polynomial(x, &TANHC_SLOPE));
+    }
     let value = if x.abs() < 0.05 {
         polynomial(x, &SINHC) / polynomial(x, &COSH)
     } else if x > 0.0 {
@@ -135,6 +138,18 @@ pub(crate) fn tanhc<K: Kind>(z: Real<K>) -> Real<K> {
     };
     z.chain(value, slope)
 }
+
+/// The series of the hyperbolic tangent (Abramowitz and Stegun 1972, 4.5.64).
+const TANHC: [f64; 7] = [
+    1.0,
+    -1.0 / 3.0,
+    2.0 / 15.0,
+    -17.0 / 315.0,
+    62.0 / 2835.0,
+    -1382.0 / 155_925.0,
+    21_844.0 / 6_081_075.0,
+];
+const TANHC_SLOPE: [f64; 6] = derivative(&TANHC);
 
 /// sinh(sqrt z)/sqrt z; sin for z < 0.
 #[inline(always)]

@@ -13,6 +13,7 @@
 use std::f64::consts::PI;
 
 use super::elementary::{atanhc, coshc, expc, lnc, sinhc, tanhc};
+use super::quadratic;
 use crate::scalar::{Kind, Real};
 
 /// The coefficients of du/dt = a - b u - c u^2.
@@ -89,17 +90,7 @@ impl<K: Kind> Force<K> {
         pace: Pace<K>,
         length: Real<K>,
     ) -> Option<(Pace<K>, Real<K>)> {
-        let (a, c) = (self.a, self.c);
-        let x = c * length * 2.0;
-        let spread = expc(x) * length * 2.0;
-        let decay = 1.0 - c * spread;
-        let w = pace.w * decay + a * spread;
-        if w.value() <= 0.0 || x.value().abs() > FAR {
-            return None;
-        }
-        let u = w.sqrt();
-        let q = spread / (u + pace.u * decay);
-        Some((Pace { u, w }, q * atanhc(a * c * q * q)))
+        quadratic::cross(self, &pace, length)
     }
 
     #[inline(never)]
@@ -189,6 +180,9 @@ impl<K: Kind> Force<K> {
     /// The speed after time `t` on the leg.
     #[inline]
     pub(crate) fn speed_after(&self, u: Real<K>, t: Real<K>) -> Real<K> {
+        if self.b.is_constantly_zero() {
+            return quadratic::speed(self, u, t);
+        }
         let g = tanhc(self.discriminant() * t * t) * t;
         let half = 0.5 * self.b;
         ((self.a - half * u) * g + u) / ((self.c * u + half) * g + 1.0)
@@ -204,10 +198,17 @@ impl<K: Kind> Force<K> {
             let r = self.discriminant().sqrt();
             ln_of_growth(r * t, self.c * u / r) / self.c
         } else {
-            let z = self.discriminant() * t * t;
-            let p = (u * sinhc(z) + self.a * t * coshc(z)) * t;
-            p * lnc(self.c * p)
+            quadratic::passed(self, u, t).1
         }
+    }
+
+    /// Speed and distance covered after time `t` on the leg.
+    pub(crate) fn passed(&self, u: Real<K>, t: Real<K>) -> (Real<K>, Real<K>) {
+        let z = (self.a * self.c * t * t).value();
+        if self.b.is_constantly_zero() && z.abs() < 400.0 {
+            return quadratic::passed(self, u, t);
+        }
+        (self.speed_after(u, t), self.distance_after(u, t))
     }
 
     /// The distance with b: ln(y)/c - b t/(2 c), y = cosh(r t) + (c u + b/2)

@@ -20,6 +20,7 @@ mod exact;
 mod fitted;
 mod lanes;
 mod motion;
+mod quadratic;
 mod resistance;
 mod sample;
 mod skim;

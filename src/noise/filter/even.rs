@@ -85,7 +85,8 @@ impl<K: Kind, const N: usize> Follows<K> for Even<K, N> {
     #[inline(always)]
     fn expect(&mut self, _: Lapse, _: Real<K>) -> Expected<K> {
         let mean = sum(&self.values, &self.mean);
-        Expected { mean, variance: self.variance }
+        let is_same = self.same >= SURE;
+        Expected { mean, variance: self.variance, is_same }
     }
 
     #[inline(always)]

@@ -121,7 +121,7 @@ impl<K: Kind, const N: usize> Follows<K> for Kalman<'_, '_, K, N> {
             self.is_steady = true;
             self.mean = times(&self.matrix, &self.mean);
             let mean = sum(&self.values, &self.mean);
-            return Expected { mean, variance: last.variance };
+            return Expected { mean, variance: last.variance, is_same: true };
         }
         self.is_steady = false;
         self.advance(lapse);
@@ -131,7 +131,7 @@ impl<K: Kind, const N: usize> Follows<K> for Kalman<'_, '_, K, N> {
         self.steady = settled.then_some(own);
         self.last = Some(next);
         let mean = sum(&self.values, &self.mean);
-        Expected { mean, variance: next.variance }
+        Expected { mean, variance: next.variance, is_same: false }
     }
 
     #[expect(clippy::needless_range_loop, reason = "two entries at once")]

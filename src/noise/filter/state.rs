@@ -20,6 +20,8 @@ pub(super) trait Follows<K: Kind> {
 pub(super) struct Expected<K: Kind> {
     pub(super) mean: Real<K>,
     pub(super) variance: Real<K>,
+    /// Whether that is what it was for the value before, but for round-off.
+    pub(super) is_same: bool,
 }
 
 pub(super) type Matrix<K, const N: usize> = [[Real<K>; N]; N];
