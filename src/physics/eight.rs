@@ -11,7 +11,7 @@
 )]
 
 use super::elementary::{
-    self, ATANHC, ATANHC_SLOPE, COSH, EXPC, EXPC_SLOPE, SINHC,
+    self, ATANHC, ATANHC_SLOPE, COSH, EXPC, EXPC_SLOPE, SINHC, TANHC,
 };
 use super::exact::FAR;
 use crate::scalar::{Grad, Plain, Real, polynomial};
@@ -99,7 +99,9 @@ fn beyond_series(z: &Eight) -> (Eight, Eight) {
 /// `elementary::tanhc` of each.
 #[inline(always)]
 pub(super) fn tanhc(z: &Eight) -> Eight {
-    if near(z, 0.05) {
+    if near(z, 3e-3) {
+        series(z, &TANHC)
+    } else if near(z, 0.05) {
         let (sine, cosine) = (series(z, &SINHC), series(z, &COSH));
         let mut tangent = [0.0; EIGHT];
         for i in 0..EIGHT {

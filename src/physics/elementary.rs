@@ -92,6 +92,10 @@ pub(super) const EXPC_SLOPE: [f64; 10] = derivative(&EXPC);
 #[inline(always)]
 pub(crate) fn lnc<K: Kind>(x: Real<K>) -> Real<K> {
     let v = x.value();
+    if v.abs() < 3e-3 {
+        let (log, slope) = (&LNC[..7], &LNC_SLOPE[..6]);
+        return x.chain(polynomial(v, log), polynomial(v, slope));
+    }
     if v.abs() < 0.02 {
         return x.chain(polynomial(v, &LNC), polynomial(v, &LNC_SLOPE));
     }
@@ -140,7 +144,7 @@ pub(crate) fn tanhc<K: Kind>(z: Real<K>) -> Real<K> {
 }
 
 /// The series of the hyperbolic tangent (Abramowitz and Stegun 1972, 4.5.64).
-const TANHC: [f64; 7] = [
+pub(super) const TANHC: [f64; 7] = [
     1.0,
     -1.0 / 3.0,
     2.0 / 15.0,
@@ -155,6 +159,10 @@ const TANHC_SLOPE: [f64; 6] = derivative(&TANHC);
 #[inline(always)]
 pub(crate) fn sinhc<K: Kind>(z: Real<K>) -> Real<K> {
     let x = z.value();
+    if x.abs() < 3e-3 {
+        let (value, slope) = (&SINHC[..5], &SINHC_SLOPE[..4]);
+        return z.chain(polynomial(x, value), polynomial(x, slope));
+    }
     if x.abs() < 0.2 {
         return z.chain(polynomial(x, &SINHC), polynomial(x, &SINHC_SLOPE));
     }
@@ -166,6 +174,10 @@ pub(crate) fn sinhc<K: Kind>(z: Real<K>) -> Real<K> {
 #[inline(always)]
 pub(crate) fn coshc<K: Kind>(z: Real<K>) -> Real<K> {
     let x = z.value();
+    if x.abs() < 3e-3 {
+        let (value, slope) = (&COSHC[..5], &COSHC_SLOPE[..4]);
+        return z.chain(polynomial(x, value), polynomial(x, slope));
+    }
     if x.abs() < 0.2 {
         return z.chain(polynomial(x, &COSHC), polynomial(x, &COSHC_SLOPE));
     }

@@ -194,10 +194,9 @@ mod tests {
     #[test]
     fn slopes_are_the_differences() {
         for [a, c] in FORCES {
-            for [u, t] in [[3.0, 0.2], [12.0, 0.8], [0.5, 1.1]] {
-                // The mass has to go on.
-                let rests = u + a * t < 0.3;
-                let at = [a, c, u, if rests { 0.1 } else { t }];
+            // None so slow, and so long, that the mass rests.
+            for [u, t] in [[3.0, 0.2], [12.0, 0.8], [2.0, 1.1]] {
+                let at = [a, c, u, t];
                 let of = |[a, c, ..]: [D; 4]| force(a, c);
                 slopes_hold("speed", |x| speed(&of(x), x[2], x[3]), at);
                 slopes_hold("passed", |x| passed(&of(x), x[2], x[3]).0, at);
