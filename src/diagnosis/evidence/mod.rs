@@ -11,4 +11,5 @@ pub(crate) mod noises;
 mod others;
 mod owns;
 mod screen;
+mod survey;
 pub(crate) mod table;

@@ -7,60 +7,29 @@
 //! the best in either way is kept.
 
 use std::f64::consts::LN_10;
-use std::ops::Deref;
 
-use super::carried::carried;
-use super::fit::{Fit, Prospect, fit, prospect};
-use crate::diagnosis::locate::{Outlook, outlook};
-use crate::draws::log_sum_exp;
+use super::fit::{Fit, fit};
+use super::survey::{Held, SIMPLE, Survey, Weighed, best, either_way};
+use crate::diagnosis::locate::Outlook;
 use crate::error::Result;
-use crate::infer::{LaplaceMixture, Precision, SearchSpace};
+use crate::infer::LaplaceMixture;
 use crate::mechanism::Extent;
-use crate::model::{AnyProgram, Point, Posterior};
-use crate::noise::{self, Form};
-use crate::parallel;
+use crate::model::AnyProgram;
+use crate::noise::Form;
 use crate::seed::Seed;
 
-/// What errors may remember, besides what the named noise says: nothing, or
-/// what a steady process does.
-const SIMPLE: [&str; 2] = ["white", "ou"];
-/// The same with white errors; what the filter of a receiver leaves, with white
-/// errors or with a slow drift.
-const SUMS: [&str; 3] = ["ou + white", "matern32 + white", "matern32 + ou"];
+/// What errors may remember with white ones on top; what the filter of a
+/// receiver leaves, with white errors.
+const WITH_WHITE: [&str; 2] = ["ou + white", "matern32 + white"];
+/// What it leaves, with a slow drift.
+const WITH_DRIFT: [&str; 1] = ["matern32 + ou"];
 /// In log10: how far below the best a noise may be that is kept.
 pub(crate) const NEAR: f64 = 2.5;
 /// In ln: by how much a noise must have more evidence than simpler ones.
 const MORE: f64 = 1.0;
-/// From how many draws of the prior climbs start before it is known whether a
-/// noise is kept.
-const STARTS: usize = 8;
 /// The most noises that mechanisms are weighed under; the named one may come
 /// on top.
 const MOST: usize = 3;
-
-/// A program as it was given, or the same with another noise.
-#[derive(Debug)]
-enum Held<'a> {
-    Named(&'a dyn AnyProgram),
-    Other(Box<dyn AnyProgram + 'a>),
-}
-
-impl Held<'_> {
-    fn is_named(&self) -> bool {
-        matches!(self, Self::Named(_))
-    }
-}
-
-impl<'a> Deref for Held<'a> {
-    type Target = dyn AnyProgram + 'a;
-
-    fn deref(&self) -> &(dyn AnyProgram + 'a) {
-        match self {
-            Self::Named(program) => *program,
-            Self::Other(program) => program.as_ref(),
-        }
-    }
-}
 
 /// A program under one noise, with what its evidence is without physics and
 /// with a force of free form.
@@ -73,15 +42,6 @@ pub(crate) struct Noisy<'a> {
     pub(crate) none: Fit,
     /// With a force of free form.
     pub(crate) open: Outlook,
-}
-
-/// The same before it is known whether it is kept.
-#[derive(Debug)]
-struct Weighed<'a> {
-    name: String,
-    program: Held<'a>,
-    none: Prospect,
-    open: Outlook,
 }
 
 impl Noisy<'_> {
@@ -105,43 +65,6 @@ impl Noisy<'_> {
     }
 }
 
-impl<'a> Weighed<'a> {
-    fn form(&self) -> Form {
-        Form::of(&self.name)
-    }
-
-    /// Whether a noise of that form need not be weighed beside it.
-    fn stands_for(&self, form: &Form, own_priors: bool) -> bool {
-        let own_form = self.form();
-        let alone = own_priors && self.program.is_named();
-        own_form.is_like(form) && (!alone || own_form == *form)
-    }
-
-    /// About ln of its evidence in either way: without physics, and with a
-    /// force.
-    fn logs(&self) -> [f64; 2] {
-        [self.none.log(), self.open.log]
-    }
-
-    /// The same of either way; that of the named one counts tenfold, so that
-    /// others take its place only where they are better by far.
-    fn worth(&self) -> f64 {
-        let named = if self.program.is_named() { LN_10 } else { 0.0 };
-        either_way(self.logs()) + named
-    }
-
-    fn fitted(self, seed: Seed) -> Result<Noisy<'a>> {
-        let Self { name, program, open, .. } = self;
-        let none = fit(&*program, &[], &LaplaceMixture::default(), seed)?;
-        Ok(Noisy { name, program, none, open })
-    }
-}
-
-/// ln of an evidence in either of two ways.
-fn either_way(logs: [f64; 2]) -> f64 {
-    log_sum_exp(logs.into_iter())
-}
-
 /// The noises that a model is weighed under.
 #[derive(Debug)]
 pub(crate) struct Noises<'a> {
@@ -163,13 +86,16 @@ pub(crate) fn noises<'a>(
     extent: &Extent,
     seed: Seed,
 ) -> Result<Noises<'a>> {
-    let own_priors = has_own_priors(program, named, seed.child(1))?;
-    let survey = Survey { program, extent, own_priors, seed };
+    let survey = Survey::new(program, named, extent, seed)?;
     let mut all = vec![survey.named(named)?];
-    all.extend(survey.others(SIMPLE.map(Form::of).into(), &all)?);
-    all.extend(survey.others(SUMS.map(Form::of).into(), &all)?);
+    for names in [&SIMPLE[..], &WITH_WHITE, &WITH_DRIFT] {
+        let forms = names.iter().map(|name| Form::of(name)).collect();
+        all.extend(survey.others(forms, &all)?);
+    }
+    survey.meet(&[], &mut all)?;
     for forms in [decorated, doubly_decorated] {
         let mut further = survey.others(forms(&all), &all)?;
+        survey.meet(&all, &mut further)?;
         further.retain(|one| pays(one, &all));
         all.extend(further);
     }
@@ -186,134 +112,8 @@ pub(crate) fn named_alone<'a>(
     extent: &Extent,
     seed: Seed,
 ) -> Result<Noises<'a>> {
-    let survey = Survey { program, extent, own_priors: false, seed };
+    let survey = Survey::new(program, named, extent, seed)?;
     kept(vec![survey.named(named)?], seed)
-}
-
-/// Weighs a program under many noises.
-struct Survey<'a, 'e> {
-    program: &'a dyn AnyProgram,
-    extent: &'e Extent,
-    /// Whether the named noise has other priors than follow from the event: it
-    /// stands for itself alone then. Priors that fit errors of one recording
-    /// may rule out those of another, and the same kind of noise with them.
-    own_priors: bool,
-    seed: Seed,
-}
-
-impl<'a> Survey<'a, '_> {
-    /// Those of some noises that none of the known ones is like, as far as
-    /// the program and its recording allow them.
-    fn others(
-        &self,
-        forms: Vec<Form>,
-        known: &[Weighed<'a>],
-    ) -> Result<Vec<Weighed<'a>>> {
-        let is_new = |form: &Form| {
-            !known.iter().any(|one| one.stands_for(form, self.own_priors))
-        };
-        let mut new = Vec::new();
-        for form in forms.into_iter().filter(is_new) {
-            let name = form.to_string();
-            // Of events with several noises the names together are none.
-            if noise::parse(&name).is_err() {
-                continue;
-            }
-            let other = self.program.under_noise(&name)?;
-            // The recording's times may not allow it.
-            let allowed =
-                other.filter(|other| Posterior::new(&**other).is_ok());
-            new.extend(allowed.map(|program| (name, program)));
-        }
-        let weighed = parallel::map(&new, |(name, program)| {
-            self.weighed(name, &**program, simpler(name, known))
-        });
-        // A noise under which nothing has a density is out of the question.
-        let found = new.into_iter().zip(weighed);
-        let found = found.filter_map(|((name, program), weighed)| {
-            let (none, open) = weighed.ok()?;
-            let program = Held::Other(program);
-            Some(Weighed { name, program, none, open })
-        });
-        Ok(found.collect())
-    }
-
-    /// The named one.
-    fn named(&self, name: &str) -> Result<Weighed<'a>> {
-        let (none, open) = self.weighed(name, self.program, None)?;
-        let program = Held::Named(self.program);
-        Ok(Weighed { name: name.to_owned(), program, none, open })
-    }
-
-    /// Without physics and with a force. That is sought from where the noise
-    /// is likely without it, and from where the force made a simpler noise
-    /// likely: the one may have swallowed the mismatch, and a climb from there
-    /// may end where it still does.
-    fn weighed(
-        &self,
-        name: &str,
-        program: &dyn AnyProgram,
-        simpler: Option<&Weighed<'_>>,
-    ) -> Result<(Prospect, Outlook)> {
-        let seed = self.seed.called(name);
-        let none = prospect(program, &[], rough_search(), seed.child(0))?;
-        let rough = Precision::Rough;
-        let mut owns =
-            vec![none.fit(program, &[], rough, seed.child(2))?.best];
-        if let Some(simpler) = simpler {
-            let old = Posterior::new(&*simpler.program)?;
-            let new = Posterior::new(program)?;
-            let (lines, own) = ([simpler.open.own.clone()], owns[0].clone());
-            owns.extend(carried(&old, &lines, &new, &[(0, &own)]));
-        }
-        let open = outlook(program, self.extent, &owns, seed.child(3))?;
-        Ok((none, open))
-    }
-}
-
-/// Whether a program's noise has other priors than the same noise gets where
-/// nobody states any.
-fn has_own_priors(
-    program: &dyn AnyProgram,
-    named: &str,
-    seed: Seed,
-) -> Result<bool> {
-    if noise::parse(named).is_err() {
-        return Ok(false);
-    }
-    // By way of another memory, which leaves the priors of this one behind.
-    let [white, ou] = SIMPLE;
-    let is_white = Form::of(named).plain().is_like(&Form::of(white));
-    let other = program.under_noise(if is_white { ou } else { white })?;
-    let default = other.as_ref().map(|o| o.under_noise(named)).transpose()?;
-    let Some(default) = default.flatten() else { return Ok(false) };
-    let (own, default) =
-        (Posterior::new(program)?, Posterior::new(&*default)?);
-    let Some(place) = own.draw_place(&mut seed.rng())? else {
-        return Ok(false);
-    };
-    let log = |of: &Posterior<'_>| -> Result<f64> {
-        Ok(of.density(Point::Line(&place))?.log_prior)
-    };
-    let (own, default) = (log(&own)?, log(&default)?);
-    Ok((own - default).abs() > 1e-9 * own.abs())
-}
-
-/// Of some noises the one that is simpler than another and has the most
-/// evidence with a force.
-fn simpler<'w, 'a>(
-    name: &str,
-    known: &'w [Weighed<'a>],
-) -> Option<&'w Weighed<'a>> {
-    let form = Form::of(name);
-    let simpler = known.iter().filter(|one| one.form().is_simpler_than(&form));
-    simpler.max_by(|a, b| a.open.log.total_cmp(&b.open.log))
-}
-
-/// A search that says which noises are worth a thorough one.
-fn rough_search() -> LaplaceMixture {
-    let space = SearchSpace { prior_starts: STARTS, ..SearchSpace::default() };
-    LaplaceMixture::within(space).quick()
 }
 
 /// How far each is below the best of all, in ln, in the way that suits it
@@ -392,8 +192,11 @@ fn kept(mut all: Vec<Weighed<'_>>, seed: Seed) -> Result<Noises<'_>> {
         .filter(|one| short(one, &all) < NEAR * LN_10)
         .map(|one| one.name.clone())
         .collect();
-    let mut first: Vec<String> =
-        [0, 1].iter().filter_map(|way| best(*way, &all)).collect();
+    let mut first: Vec<String> = [0, 1]
+        .iter()
+        .filter_map(|way| best(*way, all.iter()))
+        .map(|one| one.name.clone())
+        .collect();
     all.sort_by(|a, b| b.worth().total_cmp(&a.worth()));
     let others = all.iter().map(|one| &one.name);
     first.extend(others.filter(|name| near.contains(name)).cloned());
@@ -409,18 +212,16 @@ fn kept(mut all: Vec<Weighed<'_>>, seed: Seed) -> Result<Noises<'_>> {
         let is_near = near.contains(&one.name);
         let is_named = one.program.is_named();
         if most.contains(&one.name) || (is_near && is_named) {
-            kept.push(one.fitted(seed)?);
+            kept.push(fitted(one, seed)?);
         } else if is_named {
-            dropped = Some(one.fitted(seed)?);
+            dropped = Some(fitted(one, seed)?);
         }
     }
     Ok(Noises { kept, dropped })
 }
 
-/// The name of the noise with the most evidence in one way.
-fn best(way: usize, all: &[Weighed<'_>]) -> Option<String> {
-    let more = |a: &&Weighed<'_>, b: &&Weighed<'_>| {
-        a.logs()[way].total_cmp(&b.logs()[way])
-    };
-    all.iter().max_by(more).map(|one| one.name.clone())
+fn fitted(one: Weighed<'_>, seed: Seed) -> Result<Noisy<'_>> {
+    let Weighed { name, program, found } = one;
+    let none = fit(&*program, &[], &LaplaceMixture::default(), seed)?;
+    Ok(Noisy { name, program, none, open: found.open })
 }

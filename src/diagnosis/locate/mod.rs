@@ -35,6 +35,7 @@ pub(super) use free_form::{FORMULA, NOUN, SAYS};
 use look::{COARSE, FINE, Look, Sought, highest};
 use marginal::Marginal;
 pub(crate) use open::{Open, left_open};
+use peak::Peak;
 pub use process::CELLS;
 #[cfg(test)]
 pub(super) use process::Process;
@@ -116,11 +117,14 @@ pub(crate) struct Outlook {
     pub(crate) log: f64,
     /// The model's own parameters where it is likeliest, on the real line.
     pub(crate) own: Vec<f64>,
+    /// ln of about what is held about that place.
+    pub(crate) promised: f64,
 }
 
 /// About what a free-form force over distance brings to a model whose own
 /// parameters may be likely at some places, on the real line: from few draws,
-/// about the best of these.
+/// about the best of these; `None` where none promises more than so much, in
+/// ln.
 ///
 /// # Errors
 /// As [`locate`].
@@ -128,28 +132,37 @@ pub(crate) fn outlook(
     program: &dyn AnyProgram,
     extent: &Extent,
     owns: &[Vec<f64>],
+    least: f64,
     seed: Seed,
-) -> Result<Outlook> {
+) -> Result<Option<Outlook>> {
     let form = FreeForm::cells(extent, Axis::Place, FEW_CELLS);
     let with = With::new(program, &[&form]);
     let posterior = Posterior::new(&with)?;
     let sought = Sought::of(&posterior, extent, FEW_CELLS);
-    let mut looks: Vec<Look> = Vec::new();
-    for own in owns {
-        let others = sought.looks(own, COARSE)?;
-        let log =
-            |all: &[Look]| highest(all).map(|look| look.peak.log_evidence);
-        if looks.is_empty() || log(&others) > log(&looks) {
-            looks = others;
-        }
+    let looks = parallel::try_map(owns, |own| sought.looks(own, COARSE))?;
+    let promised = |looks: &[Look]| {
+        highest(looks).map_or(f64::NEG_INFINITY, |l| l.peak.log_evidence)
+    };
+    let best =
+        |a: &Vec<Look>, b: &Vec<Look>| promised(a).total_cmp(&promised(b));
+    let Some(looks) = looks.into_iter().max_by(best) else { return Ok(None) };
+    let Some(Peak { top, log_evidence, .. }) =
+        highest(&looks).map(|look| look.peak.clone())
+    else {
+        return Ok(None);
+    };
+    if log_evidence <= least {
+        return Ok(None);
     }
-    let own = highest(&looks)
-        .map_or_else(Vec::new, |look| look.peak.top.line.as_slice().to_vec());
     let (shared, begun) = (program.events() > 1, seed.child(0));
     let learned = Marginal::learned(sought, looks, shared, GLANCE, begun)?;
-    let (marginal, learned) = learned.ok_or_else(no_density)?;
+    let Some((marginal, learned)) = learned else { return Ok(None) };
     let found = integrated(&marginal, &learned, GLANCE, seed.child(1))?;
-    Ok(Outlook { log: found.sum.log, own })
+    Ok(Some(Outlook {
+        log: found.sum.log,
+        own: top.line.as_slice().to_vec(),
+        promised: log_evidence,
+    }))
 }
 
 /// A force of free form over distance on top of a model with mechanisms that
@@ -221,7 +234,7 @@ fn along(
     })
 }
 
-fn no_density() -> Error {
+pub(crate) fn no_density() -> Error {
     Error::inference(
         "no free-form force has a density near where the model has it without",
     )

@@ -1,0 +1,325 @@
+//! What noises promise for a model, each weighed with physics absent and with a
+//! force of free form.
+//!
+//! A search from a few draws of the prior may miss where a noise is likely, and
+//! what is likely under one noise tells where to look under another. So each is
+//! sought from where those before it have it too, and with a force once more
+//! when all are known.
+
+use std::f64::consts::LN_10;
+use std::ops::Deref;
+
+use super::carried::carried;
+use super::fit::{Prospect, prospect};
+use crate::diagnosis::locate::{Outlook, no_density, outlook};
+use crate::draws::log_sum_exp;
+use crate::error::Result;
+use crate::infer::{LaplaceMixture, Precision, SearchSpace};
+use crate::mechanism::Extent;
+use crate::model::{AnyProgram, Point, Posterior};
+use crate::noise::{self, Form};
+use crate::parallel;
+use crate::seed::Seed;
+
+/// What errors may remember, besides what the named noise says: nothing, or
+/// what a steady process does.
+pub(super) const SIMPLE: [&str; 2] = ["white", "ou"];
+/// By how much more, in ln, a place has to promise for a noise to be weighed
+/// from there again.
+const HIGHER: f64 = 1.0;
+/// From how many draws of the prior climbs start before it is known whether a
+/// noise is kept.
+const STARTS: usize = 16;
+/// At how many draws of its prior what a noise has on top of a simpler one
+/// begins.
+const ON_TOP: usize = 3;
+
+/// A program as it was given, or the same with another noise.
+#[derive(Debug)]
+pub(super) enum Held<'a> {
+    Named(&'a dyn AnyProgram),
+    Other(Box<dyn AnyProgram + 'a>),
+}
+
+impl Held<'_> {
+    pub(super) fn is_named(&self) -> bool {
+        matches!(self, Self::Named(_))
+    }
+}
+
+impl<'a> Deref for Held<'a> {
+    type Target = dyn AnyProgram + 'a;
+
+    fn deref(&self) -> &(dyn AnyProgram + 'a) {
+        match self {
+            Self::Named(program) => *program,
+            Self::Other(program) => program.as_ref(),
+        }
+    }
+}
+
+/// The same before it is known whether it is kept.
+#[derive(Debug)]
+pub(super) struct Weighed<'a> {
+    pub(super) name: String,
+    pub(super) program: Held<'a>,
+    pub(super) found: Found,
+}
+
+/// What a noise promises.
+#[derive(Debug)]
+pub(super) struct Found {
+    /// Without physics, and where that is best, on the real line.
+    none: Prospect,
+    own: Vec<f64>,
+    /// With a force of free form.
+    pub(super) open: Outlook,
+}
+
+impl<'a> Weighed<'a> {
+    pub(super) fn form(&self) -> Form {
+        Form::of(&self.name)
+    }
+
+    /// Whether a noise of that form need not be weighed beside it.
+    fn stands_for(&self, form: &Form, own_priors: bool) -> bool {
+        let own_form = self.form();
+        let alone = own_priors && self.program.is_named();
+        own_form.is_like(form) && (!alone || own_form == *form)
+    }
+
+    /// About ln of its evidence in either way: without physics, and with a
+    /// force.
+    pub(super) fn logs(&self) -> [f64; 2] {
+        [self.found.none.log(), self.found.open.log]
+    }
+
+    /// A place under it as places under another noise, what that has besides
+    /// being elsewhere.
+    fn carried(
+        &self,
+        place: &[f64],
+        new: &Posterior<'_>,
+        besides: &[&[f64]],
+    ) -> Result<Vec<Vec<f64>>> {
+        let old = Posterior::new(&*self.program)?;
+        let owns: Vec<_> = besides.iter().map(|own| (0, *own)).collect();
+        Ok(carried(&old, &[place.to_vec()], new, &owns))
+    }
+
+    /// The same of either way; that of the named one counts tenfold, so that
+    /// others take its place only where they are better by far.
+    pub(super) fn worth(&self) -> f64 {
+        let named = if self.program.is_named() { LN_10 } else { 0.0 };
+        either_way(self.logs()) + named
+    }
+}
+
+/// ln of an evidence in either of two ways.
+pub(super) fn either_way(logs: [f64; 2]) -> f64 {
+    log_sum_exp(logs.into_iter())
+}
+
+/// Weighs a program under many noises.
+pub(super) struct Survey<'a, 'e> {
+    program: &'a dyn AnyProgram,
+    extent: &'e Extent,
+    /// Whether the named noise has other priors than follow from the event: it
+    /// stands for itself alone then. Priors that fit errors of one recording
+    /// may rule out those of another, and the same kind of noise with them.
+    own_priors: bool,
+    seed: Seed,
+}
+
+impl<'a, 'e> Survey<'a, 'e> {
+    /// Of a program with its named noise.
+    ///
+    /// # Errors
+    /// A model that fails under it.
+    pub(super) fn new(
+        program: &'a dyn AnyProgram,
+        named: &str,
+        extent: &'e Extent,
+        seed: Seed,
+    ) -> Result<Self> {
+        let own_priors = has_own_priors(program, named, seed.child(1))?;
+        Ok(Self { program, extent, own_priors, seed })
+    }
+
+    /// Those of some noises that none of the known ones is like, as far as
+    /// the program and its recording allow them.
+    pub(super) fn others(
+        &self,
+        forms: Vec<Form>,
+        known: &[Weighed<'a>],
+    ) -> Result<Vec<Weighed<'a>>> {
+        let is_new = |form: &Form| {
+            !known.iter().any(|one| one.stands_for(form, self.own_priors))
+        };
+        let mut new = Vec::new();
+        for form in forms.into_iter().filter(is_new) {
+            let name = form.to_string();
+            // Of events with several noises the names together are none.
+            if noise::parse(&name).is_err() {
+                continue;
+            }
+            let other = self.program.under_noise(&name)?;
+            // The recording's times may not allow it.
+            let allowed =
+                other.filter(|other| Posterior::new(&**other).is_ok());
+            new.extend(allowed.map(|program| (name, program)));
+        }
+        let weighed = parallel::map(&new, |(name, program)| {
+            self.weighed(name, &**program, known)
+        });
+        // A noise under which nothing has a density is out of the question.
+        let found = new.into_iter().zip(weighed);
+        let found = found.filter_map(|((name, program), weighed)| {
+            let (program, found) = (Held::Other(program), weighed.ok()?);
+            Some(Weighed { name, program, found })
+        });
+        Ok(found.collect())
+    }
+
+    /// The named one.
+    pub(super) fn named(&self, name: &str) -> Result<Weighed<'a>> {
+        let found = self.weighed(name, self.program, &[])?;
+        let (name, program) = (name.to_owned(), Held::Named(self.program));
+        Ok(Weighed { name, program, found })
+    }
+
+    /// A noise beside those that are known.
+    fn weighed(
+        &self,
+        name: &str,
+        program: &dyn AnyProgram,
+        known: &[Weighed<'a>],
+    ) -> Result<Found> {
+        let seed = self.seed.called(name);
+        let beside = Beside { name, program, known };
+        let space = SearchSpace {
+            prior_starts: STARTS,
+            starts: beside.starts(seed.child(4))?,
+            ..SearchSpace::default()
+        };
+        let search = LaplaceMixture::within(space).quick();
+        let none = prospect(program, &[], search, seed.child(0))?;
+        let rough = Precision::Rough;
+        let own = none.fit(program, &[], rough, seed.child(2))?.best;
+        let owns = beside.owns(&own, seed.child(5))?;
+        let least = f64::NEG_INFINITY;
+        let open = outlook(program, self.extent, &owns, least, seed.child(3))?;
+        let open = open.ok_or_else(no_density)?;
+        Ok(Found { none, own, open })
+    }
+
+    /// Looks at each of some noises again, from where a force made another of
+    /// all likeliest.
+    pub(super) fn meet(
+        &self,
+        known: &[Weighed<'a>],
+        new: &mut [Weighed<'a>],
+    ) -> Result<()> {
+        let found = parallel::try_map(0..new.len(), |i| {
+            let others = new.iter().enumerate().filter(|(j, _)| *j != i);
+            let others = known.iter().chain(others.map(|(_, one)| one));
+            let Some(other) = best(1, others) else { return Ok(None) };
+            let Weighed { name, program, found: Found { open, .. } } = &new[i];
+            let posterior = Posterior::new(&**program)?;
+            let its = &other.found.open.own;
+            let owns = other.carried(its, &posterior, &[&open.own])?;
+            let (seed, least) =
+                (self.seed.called(name), open.promised + HIGHER);
+            outlook(&**program, self.extent, &owns, least, seed.child(6))
+        })?;
+        for (one, open) in new.iter_mut().zip(found) {
+            if let Some(open) = open
+                && open.log > one.found.open.log
+            {
+                one.found.open = open;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A program under a noise that is not weighed yet, and those that are.
+struct Beside<'s, 'a> {
+    name: &'s str,
+    program: &'s dyn AnyProgram,
+    known: &'s [Weighed<'a>],
+}
+
+impl<'a> Beside<'_, 'a> {
+    /// Where it may be likely without physics: a simpler noise is, and what
+    /// this one has on top at some draws of its prior.
+    fn starts(&self, seed: Seed) -> Result<Vec<Vec<f64>>> {
+        let Some(simpler) = self.simpler(0) else { return Ok(Vec::new()) };
+        let (new, mut rng) = (Posterior::new(self.program)?, seed.rng());
+        let draws = (0..ON_TOP).map(|_| new.draw_place(&mut rng));
+        let draws = draws.collect::<Result<Vec<_>>>()?;
+        let draws: Vec<_> = draws.iter().flatten().map(|z| &z[..]).collect();
+        simpler.carried(&simpler.found.own, &new, &draws)
+    }
+
+    /// Where it may be likely with a force: where it is without one, and where
+    /// the force made other noises likely. The one may have swallowed the
+    /// mismatch, and a climb from there may end where it still does.
+    fn owns(&self, own: &[f64], seed: Seed) -> Result<Vec<Vec<f64>>> {
+        let (simpler, any) = (self.simpler(1), best(1, self.known.iter()));
+        let new = Posterior::new(self.program)?;
+        let drawn = new.draw_place(&mut seed.rng())?;
+        let besides = [(simpler, Some(own)), (any, drawn.as_deref())];
+        let mut owns = vec![own.to_vec()];
+        for (other, besides) in besides {
+            if let (Some(other), Some(besides)) = (other, besides) {
+                let its = &other.found.open.own;
+                owns.extend(other.carried(its, &new, &[besides])?);
+            }
+        }
+        Ok(owns)
+    }
+
+    /// Of the simpler noises the one with the most evidence in one way.
+    fn simpler(&self, way: usize) -> Option<&Weighed<'a>> {
+        let form = Form::of(self.name);
+        let simpler = |one: &&Weighed<'_>| one.form().is_simpler_than(&form);
+        best(way, self.known.iter().filter(simpler))
+    }
+}
+
+/// Whether a program's noise has other priors than the same noise gets where
+/// nobody states any.
+fn has_own_priors(
+    program: &dyn AnyProgram,
+    named: &str,
+    seed: Seed,
+) -> Result<bool> {
+    if noise::parse(named).is_err() {
+        return Ok(false);
+    }
+    // By way of another memory, which leaves the priors of this one behind.
+    let [white, ou] = SIMPLE;
+    let is_white = Form::of(named).plain().is_like(&Form::of(white));
+    let other = program.under_noise(if is_white { ou } else { white })?;
+    let default = other.as_ref().map(|o| o.under_noise(named)).transpose()?;
+    let Some(default) = default.flatten() else { return Ok(false) };
+    let (own, default) =
+        (Posterior::new(program)?, Posterior::new(&*default)?);
+    let Some(place) = own.draw_place(&mut seed.rng())? else {
+        return Ok(false);
+    };
+    let log = |of: &Posterior<'_>| -> Result<f64> {
+        Ok(of.density(Point::Line(&place))?.log_prior)
+    };
+    let (own, default) = (log(&own)?, log(&default)?);
+    Ok((own - default).abs() > 1e-9 * own.abs())
+}
+
+/// The noise with the most evidence in one way.
+pub(super) fn best<'w, 'a: 'w>(
+    way: usize,
+    noises: impl Iterator<Item = &'w Weighed<'a>>,
+) -> Option<&'w Weighed<'a>> {
+    noises.max_by(|a, b| a.logs()[way].total_cmp(&b.logs()[way]))
+}
