@@ -137,10 +137,7 @@ impl<K: Kind> Whole<'_, K> {
             let log_size = self.log_size(at, i);
             let over = log_size.map(|log| (-log).exp());
             let known = errors.map_or(0.0, |s| s[i] * s[i]);
-            let own = match over {
-                Some(over) => white + over * over * known,
-                None => white + known,
-            };
+            let own = white + over.map_or(known.into(), |o| o * o * known);
             let expected = filter.expect(Lapse::before(at, i), own);
             let Expected { mean, variance, is_same } = expected;
             if variance <= 0.0 || variance.value().is_nan() {
@@ -160,13 +157,9 @@ impl<K: Kind> Whole<'_, K> {
             if !is_same {
                 precision = 1.0 / variance;
             }
-            visit(&Innovation {
-                error,
-                variance,
-                precision,
-                is_same,
-                log_size,
-            });
+            let next =
+                Innovation { error, variance, precision, is_same, log_size };
+            visit(&next);
             filter.learn(error, precision);
         }
         Ok(())

@@ -14,6 +14,7 @@ use std::f64::consts::PI;
 
 use super::elementary::{atanhc, coshc, expc, lnc, sinhc, tanhc};
 use super::quadratic;
+pub(super) use super::quadratic::{FAR, Pace};
 use crate::scalar::{Kind, Real};
 
 /// The coefficients of du/dt = a - b u - c u^2.
@@ -22,20 +23,6 @@ pub(crate) struct Force<K: Kind> {
     pub(crate) a: Real<K>,
     pub(crate) b: Real<K>,
     pub(crate) c: Real<K>,
-}
-
-/// A speed u with its square w, which the solution over distance needs.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Pace<K: Kind> {
-    pub(crate) u: Real<K>,
-    pub(crate) w: Real<K>,
-}
-
-impl<K: Kind> Pace<K> {
-    #[inline(always)]
-    pub(crate) fn new(u: Real<K>) -> Self {
-        Self { u, w: u * u }
-    }
 }
 
 /// How a leg ends.
@@ -48,9 +35,6 @@ pub(crate) enum End<K: Kind> {
     /// Never: the border is not reached in any time.
     Never,
 }
-
-/// 2 c l above which a stretch is left to [`Force::cross_far`].
-pub(super) const FAR: f64 = 2.0;
 
 impl<K: Kind> Force<K> {
     /// du/dt at speed `u`.
@@ -90,7 +74,7 @@ impl<K: Kind> Force<K> {
         pace: Pace<K>,
         length: Real<K>,
     ) -> Option<(Pace<K>, Real<K>)> {
-        quadratic::cross(self, &pace, length)
+        quadratic::cross([&self.a, &self.c], &pace, length)
     }
 
     #[inline(never)]
@@ -181,7 +165,7 @@ impl<K: Kind> Force<K> {
     #[inline]
     pub(crate) fn speed_after(&self, u: Real<K>, t: Real<K>) -> Real<K> {
         if self.b.is_constantly_zero() {
-            return quadratic::speed(self, u, t);
+            return quadratic::speed([&self.a, &self.c], u, t);
         }
         let g = tanhc(self.discriminant() * t * t) * t;
         let half = 0.5 * self.b;
@@ -198,7 +182,7 @@ impl<K: Kind> Force<K> {
             let r = self.discriminant().sqrt();
             ln_of_growth(r * t, self.c * u / r) / self.c
         } else {
-            quadratic::passed(self, u, t).1
+            quadratic::passed([&self.a, &self.c], u, t).1
         }
     }
 
@@ -206,7 +190,7 @@ impl<K: Kind> Force<K> {
     pub(crate) fn passed(&self, u: Real<K>, t: Real<K>) -> (Real<K>, Real<K>) {
         let z = (self.a * self.c * t * t).value();
         if self.b.is_constantly_zero() && z.abs() < 400.0 {
-            return quadratic::passed(self, u, t);
+            return quadratic::passed([&self.a, &self.c], u, t);
         }
         (self.speed_after(u, t), self.distance_after(u, t))
     }

@@ -3,10 +3,9 @@
 //! A number that carries many derivatives takes all of them along through each
 //! step of a formula. Here the partial derivatives by the few numbers that a
 //! leg depends on are worked out as plain numbers, and put together once. The
-//! forms themselves are those of `exact`.
+//! forms themselves are those of `exact`; its rates are a and c.
 
 use super::elementary::{atanhc, coshc, expc, lnc, sinhc, tanhc};
-use super::exact::{FAR, Force, Pace};
 use crate::scalar::{Grad, Kind, Real};
 
 /// A function of one number at a place, with its slope.
@@ -19,16 +18,33 @@ fn sloped(
     (y.value(), y.partial(0))
 }
 
-/// As [`Force::cross`]: by the chain rule on w1 = w0 e + a E, where
-/// E = (1 - e)/c and e' = -2 l e by c, -2 c e by l; and on T = q h(z), which
-/// changes with q as 1/(1 - z).
+/// A speed u with its square w, which the solution over distance needs.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pace<K: Kind> {
+    pub(crate) u: Real<K>,
+    pub(crate) w: Real<K>,
+}
+
+impl<K: Kind> Pace<K> {
+    #[inline(always)]
+    pub(crate) fn new(u: Real<K>) -> Self {
+        Self { u, w: u * u }
+    }
+}
+
+/// 2 c l above which a stretch is left to `Force::cross_far`.
+pub(super) const FAR: f64 = 2.0;
+
+/// How a stretch of length l is crossed, and in what time: by the chain rule
+/// on w1 = w0 e + a E, where E = (1 - e)/c and e' = -2 l e by c, -2 c e by l;
+/// and on T = q h(z), which changes with q as 1/(1 - z).
 #[inline(always)]
 pub(super) fn cross<K: Kind>(
-    force: &Force<K>,
+    rates: [&Real<K>; 2],
     pace: &Pace<K>,
     length: Real<K>,
 ) -> Option<(Pace<K>, Real<K>)> {
-    let [a, c, l] = [force.a, force.c, length].map(Real::value);
+    let ([a, c], l) = (rates.map(|rate| rate.value()), length.value());
     let (u0, w0) = (pace.u.value(), pace.w.value());
     let x = c * l * 2.0;
     let (mean, mean_x) = sloped(expc, x);
@@ -48,8 +64,8 @@ pub(super) fn cross<K: Kind>(
         w,
         [
             (&pace.w, decay),
-            (&force.a, spread),
-            (&force.c, a * spread_c - lost * w0),
+            (rates[0], spread),
+            (rates[1], a * spread_c - lost * w0),
             (&length, 2.0 * decay * (a - c * w0)),
         ],
     );
@@ -60,8 +76,8 @@ pub(super) fn cross<K: Kind>(
         [
             (&pace.u, -q * part * decay),
             (&w1, -q * part * u_w),
-            (&force.a, swift * c),
-            (&force.c, part * (spread_c + q * u0 * lost) + swift * a),
+            (rates[0], swift * c),
+            (rates[1], part * (spread_c + q * u0 * lost) + swift * a),
             (&length, 2.0 * decay * part * (1.0 + q * u0 * c)),
         ],
     );
@@ -74,11 +90,11 @@ pub(super) fn cross<K: Kind>(
 /// square of the tangent.
 #[inline(always)]
 pub(super) fn speed<K: Kind>(
-    force: &Force<K>,
+    rates: [&Real<K>; 2],
     u: Real<K>,
     t: Real<K>,
 ) -> Real<K> {
-    let [a, c] = [force.a, force.c].map(Real::value);
+    let [a, c] = rates.map(|rate| rate.value());
     let [u0, t0] = [u, t].map(Real::value);
     let z = a * c * t0 * t0;
     let (h, h_z) = sloped(tanhc, z);
@@ -92,8 +108,8 @@ pub(super) fn speed<K: Kind>(
     Real::combine(
         v,
         [
-            (&force.a, (both - v * c * c * u0 * steeper) * over),
-            (&force.c, (a * a * steeper - v * u0 * both) * over),
+            (rates[0], (both - v * c * c * u0 * steeper) * over),
+            (rates[1], (a * a * steeper - v * u0 * both) * over),
             (&u, (1.0 - z * h * h) * over * over),
             (&t, a - c * v * v),
         ],
@@ -109,11 +125,11 @@ pub(super) fn speed<K: Kind>(
 /// so that ds = (dp + s' dc) with 1/y of each but the time, by which it is v.
 #[inline(always)]
 pub(super) fn passed<K: Kind>(
-    force: &Force<K>,
+    rates: [&Real<K>; 2],
     u: Real<K>,
     t: Real<K>,
 ) -> (Real<K>, Real<K>) {
-    let [a, c] = [force.a, force.c].map(Real::value);
+    let [a, c] = rates.map(|rate| rate.value());
     let [u0, t0] = [u, t].map(Real::value);
     let z = a * c * t0 * t0;
     let (sine, sine_z) = sloped(sinhc, z);
@@ -131,8 +147,8 @@ pub(super) fn passed<K: Kind>(
     let speed = Real::combine(
         v,
         [
-            (&force.a, (t0 * sine + n_z * z_a - v * c * p_a) * over),
-            (&force.c, (n_z * z_c - v * (p + c * p_c)) * over),
+            (rates[0], (t0 * sine + n_z * z_a - v * c * p_a) * over),
+            (rates[1], (n_z * z_c - v * (p + c * p_c)) * over),
             (&u, over * over),
             (&t, a - c * v * v),
         ],
@@ -140,8 +156,8 @@ pub(super) fn passed<K: Kind>(
     let distance = Real::combine(
         p * log,
         [
-            (&force.a, p_a * over),
-            (&force.c, p_c * over + p * p * log_p),
+            (rates[0], p_a * over),
+            (rates[1], p_c * over + p * p * log_p),
             (&u, t0 * sine * over),
             (&t, v),
         ],
@@ -155,7 +171,7 @@ mod tests {
 
     type D = Real<Grad<4>>;
 
-    /// The slopes along three numbers against differences of fourth order.
+    /// The slopes along four numbers against differences of fourth order.
     fn slopes_hold(name: &str, f: impl Fn([D; 4]) -> D, at: [f64; 4]) {
         let h = 1e-4;
         let here: [D; 4] = std::array::from_fn(|i| D::variable(at[i], i));
@@ -176,10 +192,6 @@ mod tests {
         }
     }
 
-    fn force(a: D, c: D) -> Force<Grad<4>> {
-        Force { a, b: D::new(0.0), c }
-    }
-
     /// Forces that push and brake, with drag and without, and that grows.
     const FORCES: [[f64; 2]; 7] = [
         [2.0, 0.01],
@@ -197,13 +209,14 @@ mod tests {
             // None so slow, and so long, that the mass rests.
             for [u, t] in [[3.0, 0.2], [12.0, 0.8], [2.0, 1.1]] {
                 let at = [a, c, u, t];
-                let of = |[a, c, ..]: [D; 4]| force(a, c);
-                slopes_hold("speed", |x| speed(&of(x), x[2], x[3]), at);
-                slopes_hold("passed", |x| passed(&of(x), x[2], x[3]).0, at);
-                slopes_hold("distance", |x| passed(&of(x), x[2], x[3]).1, at);
+                let after = |x: [D; 4]| passed([&x[0], &x[1]], x[2], x[3]);
+                slopes_hold("passed", |x| after(x).0, at);
+                slopes_hold("distance", |x| after(x).1, at);
+                let alone = |x: [D; 4]| speed([&x[0], &x[1]], x[2], x[3]);
+                slopes_hold("speed", alone, at);
                 let crossed = |x: [D; 4]| {
                     let pace = Pace::new(x[2]);
-                    cross(&of(x), &pace, x[3]).expect("it is crossed")
+                    cross([&x[0], &x[1]], &pace, x[3]).expect("it is crossed")
                 };
                 slopes_hold("arrival", |x| crossed(x).0.u, at);
                 slopes_hold("after", |x| crossed(x).1, at);
@@ -214,12 +227,12 @@ mod tests {
     #[test]
     fn what_is_passed_is_crossed_in_the_same_time() {
         for [a, c] in FORCES {
-            let (force, pace) =
-                (force(a.into(), c.into()), Pace::new(7.0.into()));
-            let (arrival, after) = cross(&force, &pace, D::new(2.5)).unwrap();
-            let (reached, covered) = passed(&force, pace.u, after);
+            let (rates, pace) = ([a, c].map(D::new), Pace::new(7.0.into()));
+            let rates = rates.each_ref();
+            let (arrival, after) = cross(rates, &pace, D::new(2.5)).unwrap();
+            let (reached, covered) = passed(rates, pace.u, after);
             assert!((covered - 2.5).value().abs() < 1e-14, "{a} {c}");
-            let off = speed(&force, pace.u, after) - arrival.u;
+            let off = speed(rates, pace.u, after) - arrival.u;
             assert!(off.value().abs() < 1e-14, "{a} {c}");
             assert!((reached - arrival.u).value().abs() < 1e-14, "{a} {c}");
         }
