@@ -28,7 +28,7 @@ pub(super) const SIMPLE: [&str; 2] = ["white", "ou"];
 /// from there again.
 const HIGHER: f64 = 1.0;
 /// From how many draws of the prior climbs start before it is known whether a
-/// noise is kept.
+/// noise is kept (docs/record/thresholds.md).
 const STARTS: usize = 16;
 /// At how many draws of its prior what a noise has on top of a simpler one
 /// begins.
@@ -107,8 +107,9 @@ impl<'a> Weighed<'a> {
         Ok(carried(&old, &[place.to_vec()], new, &owns))
     }
 
-    /// The same of either way; that of the named one counts tenfold, so that
-    /// others take its place only where they are better by far.
+    /// About ln of its evidence in either way; that of the named one counts
+    /// tenfold, so that others take its place only where they are better by
+    /// far.
     pub(super) fn worth(&self) -> f64 {
         let named = if self.program.is_named() { LN_10 } else { 0.0 };
         either_way(self.logs()) + named

@@ -314,3 +314,21 @@ fn where_no_force_has_a_density_none_is_left() {
     let rest = left(&program, &[], &none, &extent, Seed::new(1)).unwrap();
     assert!(rest.is_none());
 }
+
+#[test]
+fn an_outlook_begins_at_the_best_place_and_asks_for_what_it_must_exceed() {
+    let program = pushed();
+    let extent = program.0.extent();
+    // On the real line; the second has hardly a density.
+    let owns = [vec![9.0], vec![0.33]];
+    let of = |owns: &[Vec<f64>], least: f64| {
+        outlook(&program, &extent, owns, least, Seed::new(2)).unwrap()
+    };
+    let none = f64::NEG_INFINITY;
+    let good = of(&owns[1..], none).unwrap();
+    let both = of(&owns, none).unwrap();
+    assert_eq!((both.log, both.own), (good.log, good.own));
+    assert!(of(&owns[1..], good.promised).is_none());
+    assert!(of(&owns[1..], good.promised - 0.1).is_some());
+    assert!(of(&[], none).is_none());
+}
