@@ -549,7 +549,8 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
             let (speed, distance) = (self.pace.u, self.place);
             return State { speed, distance, acceleration };
         }
-        let (speed, covered) = self.force.passed(self.pace.u, after);
+        let speed = self.force.speed_after(self.pace.u, after);
+        let covered = self.force.distance_after(self.pace.u, after);
         let mut state = State {
             speed,
             distance: self.place + covered,

@@ -182,17 +182,8 @@ impl<K: Kind> Force<K> {
             let r = self.discriminant().sqrt();
             ln_of_growth(r * t, self.c * u / r) / self.c
         } else {
-            quadratic::passed([&self.a, &self.c], u, t).1
+            quadratic::distance([&self.a, &self.c], u, t)
         }
-    }
-
-    /// Speed and distance covered after time `t` on the leg.
-    pub(crate) fn passed(&self, u: Real<K>, t: Real<K>) -> (Real<K>, Real<K>) {
-        let z = (self.a * self.c * t * t).value();
-        if self.b.is_constantly_zero() && z.abs() < 400.0 {
-            return quadratic::passed([&self.a, &self.c], u, t);
-        }
-        (self.speed_after(u, t), self.distance_after(u, t))
     }
 
     /// The distance with b: ln(y)/c - b t/(2 c), y = cosh(r t) + (c u + b/2)

@@ -281,7 +281,8 @@ impl<K: Kind, L: Friction<K>> Walker<K> for ExactWalker<'_, K, L> {
     #[inline]
     fn state_at(&mut self, time: f64) -> Result<State<K>, Stop> {
         let after = time - self.begins;
-        let (speed, covered) = self.force.passed(self.pace.u, after);
+        let speed = self.force.speed_after(self.pace.u, after);
+        let covered = self.force.distance_after(self.pace.u, after);
         Ok(State {
             speed,
             distance: self.place() + covered,
