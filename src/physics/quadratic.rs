@@ -121,8 +121,8 @@ pub(super) fn speed<K: Kind>(
 ///
 /// p = (u S + a t C) t,  y = 1 + c p,  s = ln(y)/c,
 ///
-/// so that ds = dp/y + s' dc by a, c and u; by t it is the speed,
-/// (u (1 + z C) + a t S)/y.
+/// so that it changes with a and u as p does over y, with c by p^2 h'(c p) more,
+/// h(x) = ln(1 + x)/x, and with t by the speed, (u (1 + z C) + a t S)/y.
 #[inline(always)]
 pub(super) fn distance<K: Kind>(
     rates: [&Real<K>; 2],
