@@ -84,6 +84,14 @@ pub(super) fn cross<K: Kind>(
     Some((Pace { u: w1.chain(u, u_w), w: w1 }, after))
 }
 
+/// a, c, speed and time as plain numbers, and z = a c t^2.
+#[inline(always)]
+fn numbers<K: Kind>(rates: [&Real<K>; 2], u: Real<K>, t: Real<K>) -> [f64; 5] {
+    let [a, c] = rates.map(|rate| rate.value());
+    let [u, t] = [u, t].map(Real::value);
+    [a, c, u, t, a * c * t * t]
+}
+
 /// The speed after time `t`: (a g + u)/(1 + c u g), g = t h(z), h the
 /// hyperbolic tangent of the root of z = a c t^2 over that root. By u it
 /// changes as 1/cosh^2 over the square of the denominator, with h^2 z the
@@ -94,9 +102,7 @@ pub(super) fn speed<K: Kind>(
     u: Real<K>,
     t: Real<K>,
 ) -> Real<K> {
-    let [a, c] = rates.map(|rate| rate.value());
-    let [u0, t0] = [u, t].map(Real::value);
-    let z = a * c * t0 * t0;
+    let [a, c, u0, t0, z] = numbers(rates, u, t);
     let (h, h_z) = sloped(tanhc, z);
     let g = h * t0;
     let below = c * u0 * g + 1.0;
@@ -129,9 +135,7 @@ pub(super) fn distance<K: Kind>(
     u: Real<K>,
     t: Real<K>,
 ) -> Real<K> {
-    let [a, c] = rates.map(|rate| rate.value());
-    let [u0, t0] = [u, t].map(Real::value);
-    let z = a * c * t0 * t0;
+    let [a, c, u0, t0, z] = numbers(rates, u, t);
     let (sine, sine_z) = sloped(sinhc, z);
     let (rise, rise_z) = sloped(coshc, z);
     let p = (u0 * sine + a * t0 * rise) * t0;

@@ -9,16 +9,19 @@
 use std::f64::consts::LN_10;
 
 use super::fit::{Fit, fit};
-use super::survey::{Held, SIMPLE, Survey, Weighed, best, either_way};
+use super::survey::{Held, Survey, Weighed, best, either_way};
 use crate::diagnosis::locate::Outlook;
 use crate::error::Result;
 use crate::infer::LaplaceMixture;
 use crate::mechanism::Extent;
-use crate::model::AnyProgram;
-use crate::noise::Form;
+use crate::model::{AnyProgram, Point, Posterior};
+use crate::noise::{self, Form};
 use crate::seed::Seed;
 
-/// What errors may remember with white ones on top; what the filter of a
+/// What errors may remember, besides what the named noise says: nothing, or
+/// what a steady process does.
+const SIMPLE: [&str; 2] = ["white", "ou"];
+/// The same with white errors on top; what the filter of a
 /// receiver leaves, with white errors.
 const WITH_WHITE: [&str; 2] = ["ou + white", "matern32 + white"];
 /// What it leaves, with a slow drift.
@@ -86,7 +89,8 @@ pub(crate) fn noises<'a>(
     extent: &Extent,
     seed: Seed,
 ) -> Result<Noises<'a>> {
-    let survey = Survey::new(program, named, extent, seed)?;
+    let own_priors = has_own_priors(program, named, seed.child(1))?;
+    let survey = Survey { program, extent, own_priors, seed };
     let mut all = vec![survey.named(named)?];
     for names in [&SIMPLE[..], &WITH_WHITE, &WITH_DRIFT] {
         let forms = names.iter().map(|name| Form::of(name)).collect();
@@ -112,8 +116,36 @@ pub(crate) fn named_alone<'a>(
     extent: &Extent,
     seed: Seed,
 ) -> Result<Noises<'a>> {
-    let survey = Survey::new(program, named, extent, seed)?;
+    let survey = Survey { program, extent, own_priors: false, seed };
     kept(vec![survey.named(named)?], seed)
+}
+
+/// Whether a program's noise has other priors than the same noise gets where
+/// nobody states any.
+fn has_own_priors(
+    program: &dyn AnyProgram,
+    named: &str,
+    seed: Seed,
+) -> Result<bool> {
+    if noise::parse(named).is_err() {
+        return Ok(false);
+    }
+    // By way of another memory, which leaves the priors of this one behind.
+    let [white, ou] = SIMPLE;
+    let is_white = Form::of(named).plain().is_like(&Form::of(white));
+    let other = program.under_noise(if is_white { ou } else { white })?;
+    let default = other.as_ref().map(|o| o.under_noise(named)).transpose()?;
+    let Some(default) = default.flatten() else { return Ok(false) };
+    let (own, default) =
+        (Posterior::new(program)?, Posterior::new(&*default)?);
+    let Some(place) = own.draw_place(&mut seed.rng())? else {
+        return Ok(false);
+    };
+    let log = |of: &Posterior<'_>| -> Result<f64> {
+        Ok(of.density(Point::Line(&place))?.log_prior)
+    };
+    let (own, default) = (log(&own)?, log(&default)?);
+    Ok((own - default).abs() > 1e-9 * own.abs())
 }
 
 /// How far each is below the best of all, in ln, in the way that suits it

@@ -16,14 +16,11 @@ use crate::draws::log_sum_exp;
 use crate::error::Result;
 use crate::infer::{LaplaceMixture, Precision, SearchSpace};
 use crate::mechanism::Extent;
-use crate::model::{AnyProgram, Point, Posterior};
+use crate::model::{AnyProgram, Posterior};
 use crate::noise::{self, Form};
 use crate::parallel;
 use crate::seed::Seed;
 
-/// What errors may remember, besides what the named noise says: nothing, or
-/// what a steady process does.
-pub(super) const SIMPLE: [&str; 2] = ["white", "ou"];
 /// By how much more, in ln, a place has to promise for a noise to be weighed
 /// from there again.
 const HIGHER: f64 = 1.0;
@@ -123,30 +120,16 @@ pub(super) fn either_way(logs: [f64; 2]) -> f64 {
 
 /// Weighs a program under many noises.
 pub(super) struct Survey<'a, 'e> {
-    program: &'a dyn AnyProgram,
-    extent: &'e Extent,
+    pub(super) program: &'a dyn AnyProgram,
+    pub(super) extent: &'e Extent,
     /// Whether the named noise has other priors than follow from the event: it
     /// stands for itself alone then. Priors that fit errors of one recording
     /// may rule out those of another, and the same kind of noise with them.
-    own_priors: bool,
-    seed: Seed,
+    pub(super) own_priors: bool,
+    pub(super) seed: Seed,
 }
 
-impl<'a, 'e> Survey<'a, 'e> {
-    /// Of a program with its named noise.
-    ///
-    /// # Errors
-    /// A model that fails under it.
-    pub(super) fn new(
-        program: &'a dyn AnyProgram,
-        named: &str,
-        extent: &'e Extent,
-        seed: Seed,
-    ) -> Result<Self> {
-        let own_priors = has_own_priors(program, named, seed.child(1))?;
-        Ok(Self { program, extent, own_priors, seed })
-    }
-
+impl<'a> Survey<'a, '_> {
     /// Those of some noises that none of the known ones is like, as far as
     /// the program and its recording allow them.
     pub(super) fn others(
@@ -197,7 +180,8 @@ impl<'a, 'e> Survey<'a, 'e> {
         known: &[Weighed<'a>],
     ) -> Result<Found> {
         let seed = self.seed.called(name);
-        let beside = Beside { name, program, known };
+        let new = Posterior::new(program)?;
+        let beside = Beside { form: Form::of(name), new, known };
         let space = SearchSpace {
             prior_starts: STARTS,
             starts: beside.starts(seed.child(4))?,
@@ -246,8 +230,8 @@ impl<'a, 'e> Survey<'a, 'e> {
 
 /// A program under a noise that is not weighed yet, and those that are.
 struct Beside<'s, 'a> {
-    name: &'s str,
-    program: &'s dyn AnyProgram,
+    form: Form,
+    new: Posterior<'s>,
     known: &'s [Weighed<'a>],
 }
 
@@ -256,11 +240,11 @@ impl<'a> Beside<'_, 'a> {
     /// this one has on top at some draws of its prior.
     fn starts(&self, seed: Seed) -> Result<Vec<Vec<f64>>> {
         let Some(simpler) = self.simpler(0) else { return Ok(Vec::new()) };
-        let (new, mut rng) = (Posterior::new(self.program)?, seed.rng());
+        let (new, mut rng) = (&self.new, seed.rng());
         let draws = (0..ON_TOP).map(|_| new.draw_place(&mut rng));
         let draws = draws.collect::<Result<Vec<_>>>()?;
         let draws: Vec<_> = draws.iter().flatten().map(|z| &z[..]).collect();
-        simpler.carried(&simpler.found.own, &new, &draws)
+        simpler.carried(&simpler.found.own, new, &draws)
     }
 
     /// Where it may be likely with a force: where it is without one, and where
@@ -268,14 +252,13 @@ impl<'a> Beside<'_, 'a> {
     /// mismatch, and a climb from there may end where it still does.
     fn owns(&self, own: &[f64], seed: Seed) -> Result<Vec<Vec<f64>>> {
         let (simpler, any) = (self.simpler(1), best(1, self.known.iter()));
-        let new = Posterior::new(self.program)?;
-        let drawn = new.draw_place(&mut seed.rng())?;
+        let drawn = self.new.draw_place(&mut seed.rng())?;
         let besides = [(simpler, Some(own)), (any, drawn.as_deref())];
         let mut owns = vec![own.to_vec()];
         for (other, besides) in besides {
             if let (Some(other), Some(besides)) = (other, besides) {
                 let its = &other.found.open.own;
-                owns.extend(other.carried(its, &new, &[besides])?);
+                owns.extend(other.carried(its, &self.new, &[besides])?);
             }
         }
         Ok(owns)
@@ -283,38 +266,10 @@ impl<'a> Beside<'_, 'a> {
 
     /// Of the simpler noises the one with the most evidence in one way.
     fn simpler(&self, way: usize) -> Option<&Weighed<'a>> {
-        let form = Form::of(self.name);
-        let simpler = |one: &&Weighed<'_>| one.form().is_simpler_than(&form);
+        let simpler =
+            |one: &&Weighed<'_>| one.form().is_simpler_than(&self.form);
         best(way, self.known.iter().filter(simpler))
     }
-}
-
-/// Whether a program's noise has other priors than the same noise gets where
-/// nobody states any.
-fn has_own_priors(
-    program: &dyn AnyProgram,
-    named: &str,
-    seed: Seed,
-) -> Result<bool> {
-    if noise::parse(named).is_err() {
-        return Ok(false);
-    }
-    // By way of another memory, which leaves the priors of this one behind.
-    let [white, ou] = SIMPLE;
-    let is_white = Form::of(named).plain().is_like(&Form::of(white));
-    let other = program.under_noise(if is_white { ou } else { white })?;
-    let default = other.as_ref().map(|o| o.under_noise(named)).transpose()?;
-    let Some(default) = default.flatten() else { return Ok(false) };
-    let (own, default) =
-        (Posterior::new(program)?, Posterior::new(&*default)?);
-    let Some(place) = own.draw_place(&mut seed.rng())? else {
-        return Ok(false);
-    };
-    let log = |of: &Posterior<'_>| -> Result<f64> {
-        Ok(of.density(Point::Line(&place))?.log_prior)
-    };
-    let (own, default) = (log(&own)?, log(&default)?);
-    Ok((own - default).abs() > 1e-9 * own.abs())
 }
 
 /// The noise with the most evidence in one way.

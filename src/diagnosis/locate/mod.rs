@@ -35,7 +35,6 @@ pub(super) use free_form::{FORMULA, NOUN, SAYS};
 use look::{COARSE, FINE, Look, Sought, highest};
 use marginal::Marginal;
 pub(crate) use open::{Open, left_open};
-use peak::Peak;
 pub use process::CELLS;
 #[cfg(test)]
 pub(super) use process::Process;
@@ -143,26 +142,20 @@ pub(crate) fn outlook(
     let promised = |looks: &[Look]| {
         highest(looks).map_or(f64::NEG_INFINITY, |l| l.peak.log_evidence)
     };
-    let best =
+    let less =
         |a: &Vec<Look>, b: &Vec<Look>| promised(a).total_cmp(&promised(b));
-    let Some(looks) = looks.into_iter().max_by(best) else { return Ok(None) };
-    let Some(Peak { top, log_evidence, .. }) =
-        highest(&looks).map(|look| look.peak.clone())
-    else {
+    let Some(looks) = looks.into_iter().max_by(less) else { return Ok(None) };
+    let best = highest(&looks).map(|look| &look.peak);
+    let Some(best) = best.filter(|peak| peak.log_evidence > least) else {
         return Ok(None);
     };
-    if log_evidence <= least {
-        return Ok(None);
-    }
+    let (promised, own) =
+        (best.log_evidence, best.top.line.as_slice().to_vec());
     let (shared, begun) = (program.events() > 1, seed.child(0));
     let learned = Marginal::learned(sought, looks, shared, GLANCE, begun)?;
     let Some((marginal, learned)) = learned else { return Ok(None) };
     let found = integrated(&marginal, &learned, GLANCE, seed.child(1))?;
-    Ok(Some(Outlook {
-        log: found.sum.log,
-        own: top.line.as_slice().to_vec(),
-        promised: log_evidence,
-    }))
+    Ok(Some(Outlook { log: found.sum.log, own, promised }))
 }
 
 /// A force of free form over distance on top of a model with mechanisms that
