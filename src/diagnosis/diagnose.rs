@@ -8,24 +8,26 @@ use crate::diagnosis::compare::checks::{
 };
 use crate::diagnosis::decide::choose::{Choice, Explained};
 use crate::diagnosis::decide::chosen::Chosen;
+use crate::diagnosis::decide::decision::Decision;
 use crate::diagnosis::decide::judge::{
-    Beforehand, Seen, check_odds, group, judge_all, log_of_noises,
-    next_recording, verdict,
+    Seen, group, judge_all, log_of_noises, verdict,
 };
 use crate::diagnosis::decide::noise::{judged_noises, taken};
+use crate::diagnosis::decide::odds::{Beforehand, check_odds};
 use crate::diagnosis::evidence::attribute::Care;
 use crate::diagnosis::evidence::fit::Fit;
 use crate::diagnosis::evidence::noises::{named_alone, noises};
 use crate::diagnosis::evidence::table::{Row, Table};
 use crate::diagnosis::findings::{
-    BeforeAfter, Diagnosis, Judged, JudgedNoise, LawParameters,
-    ParameterSummary, Rest, Rival, Verdict, Withheld,
+    BeforeAfter, Diagnosis, LawParameters, ParameterSummary, Rest, Verdict,
+    Withheld,
 };
 use crate::diagnosis::hypothesis::{NONE, UNKNOWN};
 use crate::diagnosis::locate::{
     FORMULA, FreeForce, Open, free_fit, left, left_open,
 };
 use crate::diagnosis::options::Options;
+use crate::diagnosis::tell::next::next_recording;
 use crate::diagnosis::tell::noise::is_other;
 use crate::diagnosis::tell::paste::corrected;
 use crate::diagnosis::tell::place::{mark, mismatch};
@@ -93,49 +95,6 @@ struct Subject<'a> {
 /// How sure, in ln, an evidence is that was carried over to another noise: one
 /// gets fits of its own only where it promises more by so much.
 const UNSURE: f64 = 1.0;
-
-/// What was decided from the evidence.
-struct Decision {
-    /// Everything that was weighed, most probable first.
-    judged: Vec<Judged>,
-    /// The noises that are kept, most probable first.
-    noises: Vec<JudgedNoise>,
-    verdict: Verdict,
-    /// Under which noise of the table the model goes on.
-    row: usize,
-    /// What is added to the model.
-    chosen: Option<Chosen>,
-    /// What does nearly as well as a force of free form that is not.
-    equal: Option<Chosen>,
-    /// What would be added if it did not make the fit worse.
-    withheld: Option<Withheld>,
-}
-
-impl Decision {
-    /// Whether the errors are all that is corrected.
-    fn takes_noise(&self) -> bool {
-        self.verdict == Verdict::Errors && self.withheld.is_none()
-    }
-
-    /// The noise of the corrected model: the named one where nothing is wrong,
-    /// or where another makes the fit worse.
-    fn noise(&self, row: &Row<'_>, options: &Options) -> String {
-        let other = match self.verdict {
-            Verdict::Adequate => options.infers_noise,
-            Verdict::Errors => self.takes_noise(),
-            _ => true,
-        };
-        if other { row.noisy.name.clone() } else { options.noise.clone() }
-    }
-
-    /// What would do nearly as well as what was decided.
-    fn rivals(&self, all: &[Box<dyn Mechanism>], none: &Fit) -> Vec<Rival> {
-        let of = |c: &Chosen| c.rivals(all, none);
-        let mut rivals = self.chosen.as_ref().map(of).unwrap_or_default();
-        rivals.extend(self.equal.iter().map(|c| c.as_rival(all, none)));
-        rivals
-    }
-}
 
 impl Subject<'_> {
     fn diagnose(

@@ -19,7 +19,8 @@ mod tests;
 mod together;
 
 pub use crate::model::Together;
-pub use decide::judge::{Odds, judge, prior_probabilities};
+pub use decide::judge::judge;
+pub use decide::odds::{Odds, prior_probabilities};
 pub use diagnose::{diagnose, diagnose_together};
 pub use evidence::attribute::{Attribution, attribute};
 pub use evidence::combination::pair;

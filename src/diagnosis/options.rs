@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::diagnosis::decide::judge::Odds;
+use crate::diagnosis::decide::odds::Odds;
 use crate::diagnosis::declarations::declarations;
 use crate::mechanism::Mechanism;
 use crate::mechanism::catalogue::Catalogue;

@@ -163,8 +163,9 @@ fn drawn<O: Outer>(
     parallel::try_map(0..count as u64, |i| {
         let seed = seed.child(i);
         let mut rng = seed.child(0).rng();
-        let Some((z, base)) = proposed(outer, mixture, &mut rng)? else {
-            return Ok((Particle::without_density(0), None));
+        let (z, base) = proposed(outer, mixture, &mut rng)?;
+        let Some(base) = base else {
+            return Ok((Particle::without_density(z.len()), None));
         };
         let held = outer.held(&z, seed.child(1))?;
         Ok((Particle::new(z, base, held.log), held.rest))
@@ -172,19 +173,83 @@ fn drawn<O: Outer>(
 }
 
 /// A draw of the outer coordinates with ln of the proposal's density; `None`
-/// for one of the prior that is cut short.
+/// in the place of that where their prior has no density.
 fn proposed<O: Outer>(
     outer: &O,
     mixture: &Mixture,
     rng: &mut Rng,
-) -> Result<Option<(Vec<f64>, f64)>> {
+) -> Result<(Vec<f64>, Option<f64>)> {
     let Some(prior) = outer.prior() else {
         let z = mixture.draw(rng);
         let base = mixture.log_density(&z);
-        return Ok(Some((z, base)));
+        return Ok((z, Some(base)));
     };
     let base = Base::Mixture(mixture.clone());
     let particle = base.draw(prior, rng)?;
     let whole = particle.log_target() > f64::NEG_INFINITY;
-    Ok(whole.then_some((particle.z, particle.base)))
+    let base = whole.then_some(particle.base);
+    Ok((particle.z, base))
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+    use statrs::distribution::{Continuous, Normal as StatrsNormal};
+
+    use super::*;
+    use crate::error::{Outcome, Stop};
+    use crate::model::{Label, Number, Point, Program, Run};
+    use crate::prior::AnyPrior;
+
+    /// x ~ N(0, 1), which has no density below 0.
+    struct Above;
+
+    impl Program for Above {
+        fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
+            let prior = AnyPrior::Normal(0.0, 1.0);
+            let x = run.scalar(Label::new("x", "1"), prior)?;
+            if x.value() < 0.0 {
+                return Err(Stop::Reject("x is below 0"));
+            }
+            Ok(())
+        }
+    }
+
+    /// 1 was seen of N(x, 0.1).
+    struct Seen<'p>(Posterior<'p>);
+
+    const ERROR: f64 = 0.1;
+
+    impl Outer for Seen<'_> {
+        type Rest = ();
+
+        fn held(&self, z: &[f64], _: Seed) -> Result<Held<()>> {
+            let prior = self.0.density(Point::Line(z))?.on_line();
+            let law = StatrsNormal::new(z[0], ERROR).unwrap();
+            Ok(Held { log: prior + law.ln_pdf(1.0), rest: Some(()) })
+        }
+
+        fn prior(&self) -> Option<&Posterior<'_>> {
+            Some(&self.0)
+        }
+    }
+
+    #[test]
+    fn draws_without_a_density_are_learned_from_as_nothing() {
+        let outer = Seen(Posterior::new(&Above).unwrap());
+        // Most of what is drawn is below 0, and hardly any of it near 1.
+        let mean = DVector::from_element(1, -2.0);
+        let part = (1.0, mean, DMatrix::from_element(1, 1, 1.0));
+        let mixture = Mixture::of([part].into_iter()).unwrap();
+        let effort =
+            Effort { learning: 200, rounds: 6, last: (400, 400), error: 0.1 };
+        let learned = learn(&outer, mixture, effort, Seed::new(1)).unwrap();
+        assert!(learned.share > GOOD, "{}", learned.share);
+        let found = integrated(&outer, &learned, effort, Seed::new(2));
+        let Sum { log, se, .. } = found.unwrap().sum;
+        let known = StatrsNormal::new(0.0, ERROR.hypot(1.0)).unwrap();
+        let off = log - known.ln_pdf(1.0);
+        // Four standard errors of the estimate.
+        assert!(off.abs() < 4.0 * se && se < 0.1, "{off} +- {se}");
+    }
 }

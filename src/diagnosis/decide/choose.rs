@@ -3,7 +3,8 @@
 use std::f64::consts::LN_10;
 
 use crate::diagnosis::decide::chosen::Chosen;
-use crate::diagnosis::decide::judge::{Beforehand, verdict_of_family};
+use crate::diagnosis::decide::judge::verdict_of_family;
+use crate::diagnosis::decide::odds::Beforehand;
 use crate::diagnosis::decide::stepwise::{RISE, Stepwise};
 use crate::diagnosis::evidence::attribute::Attribution;
 use crate::diagnosis::evidence::noises::Noisy;

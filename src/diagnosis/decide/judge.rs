@@ -1,8 +1,8 @@
-//! From evidence to probabilities: names, variants, odds and groups.
+//! From evidence to probabilities: names, variants and groups.
 
-use std::collections::BTreeMap;
 use std::f64::consts::LN_10;
 
+use super::odds::{Beforehand, Odds, names};
 use crate::diagnosis::evidence::attribute::Attribution;
 use crate::diagnosis::evidence::fit::Fit;
 use crate::diagnosis::evidence::table::Row;
@@ -10,44 +10,11 @@ use crate::diagnosis::findings::{Judged, ParameterSummary, Variant, Verdict};
 use crate::diagnosis::hypothesis::{Hypothesis, NONE, UNKNOWN};
 use crate::diagnosis::locate::{FreeForce, NOUN, SAYS};
 use crate::draws::{log_sum_exp, summarise};
-use crate::error::{Error, Result};
 use crate::mechanism::{Candidate, Family, Mechanism, Noun};
-use crate::physics::forces::Axis;
-
-/// What the user holds likely beforehand: odds by name, against 1 for every
-/// name not in it; `none` against all the others together.
-pub type Odds = BTreeMap<String, f64>;
 
 /// ln of the mean of exp.
 fn log_mean(logs: &[f64]) -> f64 {
     log_sum_exp(logs.iter().copied()) - (logs.len() as f64).ln()
-}
-
-/// The names of a catalogue, each once.
-fn names(catalogue: &[Box<dyn Mechanism>]) -> Vec<&'static str> {
-    let mut names: Vec<&str> = Vec::new();
-    for mechanism in catalogue {
-        if !names.contains(&mechanism.name()) {
-            names.push(mechanism.name());
-        }
-    }
-    names
-}
-
-/// Refuses odds of what is not weighed.
-pub(crate) fn check_odds(
-    odds: &Odds,
-    catalogue: &[Box<dyn Mechanism>],
-) -> Result<()> {
-    let known = [&[NONE, UNKNOWN], &names(catalogue)[..]].concat();
-    match odds.keys().find(|name| !known.contains(&name.as_str())) {
-        None => Ok(()),
-        Some(name) => Err(Error::input(format!(
-            "the odds of {name:?}: nothing of that name is weighed here; \
-             expected one of {}: take one of them, or drop it",
-            known.join(", ")
-        ))),
-    }
 }
 
 /// What the evidence says under one noise.
@@ -254,63 +221,6 @@ fn unknown(rows: &[Seen<'_>]) -> Option<Judged> {
     })
 }
 
-/// What is held likely before the recording is seen: half of it for `none`,
-/// half shared by the other names, times the user's odds.
-pub(crate) struct Beforehand<'a> {
-    odds: &'a Odds,
-    /// The odds of all names but `none`.
-    others: f64,
-}
-
-impl<'a> Beforehand<'a> {
-    pub(crate) fn of(all: &[Judged], odds: &'a Odds) -> Self {
-        Self::among(all.iter().map(|m| m.name.as_str()), odds)
-    }
-
-    fn among<'n>(
-        names: impl Iterator<Item = &'n str>,
-        odds: &'a Odds,
-    ) -> Self {
-        let mut beforehand = Self { odds, others: 0.0 };
-        let others = names.filter(|name| *name != NONE);
-        beforehand.others = others.map(|name| beforehand.odds_of(name)).sum();
-        beforehand
-    }
-
-    fn odds_of(&self, name: &str) -> f64 {
-        self.odds.get(name).copied().unwrap_or(1.0)
-    }
-
-    /// ln of the prior probability of a name, up to a constant.
-    fn log(&self, name: &str) -> f64 {
-        match name {
-            NONE => self.odds_of(NONE).ln(),
-            name => (self.odds_of(name) / self.others).ln(),
-        }
-    }
-
-    /// In ln, by how much less likely a term is than its absence.
-    pub(crate) fn price(&self, name: &str) -> f64 {
-        self.log(NONE) - self.log(name)
-    }
-}
-
-/// The probability of each name before the recording is seen: that of the
-/// model as it was, then those of a catalogue's names, each once.
-pub fn prior_probabilities(
-    catalogue: &[Box<dyn Mechanism>],
-    odds: &Odds,
-) -> Vec<(String, f64)> {
-    let all = [&[NONE], &names(catalogue)[..]].concat();
-    let beforehand = Beforehand::among(all.iter().copied(), odds);
-    let logs: Vec<f64> = all.iter().map(|name| beforehand.log(name)).collect();
-    let total = log_sum_exp(logs.iter().copied());
-    all.into_iter()
-        .zip(logs)
-        .map(|(name, log)| (name.to_owned(), (log - total).exp()))
-        .collect()
-}
-
 fn weigh(all: &mut [Judged], odds: &Odds) {
     let beforehand = Beforehand::of(all, odds);
     let logs: Vec<f64> =
@@ -322,7 +232,7 @@ fn weigh(all: &mut [Judged], odds: &Odds) {
 }
 
 /// The verdict that a hypothesis stands for.
-fn verdict_of(kind: Hypothesis) -> Verdict {
+pub(crate) fn verdict_of(kind: Hypothesis) -> Verdict {
     match kind {
         Hypothesis::Baseline => Verdict::Adequate,
         Hypothesis::Unknown => Verdict::Unexplained,
@@ -367,85 +277,9 @@ pub(crate) fn group(all: &[Judged]) -> Vec<String> {
     near.into_iter().take(3).map(|m| m.name.clone()).collect()
 }
 
-/// The recording that would tell most beside this one: what tells the members
-/// of a group apart or, of one member, whether it is that.
-pub(crate) fn next_recording(
-    verdict: Verdict,
-    group: &[String],
-    judged: &[Judged],
-) -> Option<String> {
-    if group.len() > 1 {
-        return Some(separating(group, judged));
-    }
-    let words = match verdict {
-        Verdict::Adequate => return None,
-        Verdict::MissingPhysics => {
-            "A recording from another start over the same ground would show \
-             whether it holds there too."
-        }
-        Verdict::Unexplained => {
-            "A recording from another start over the same ground would show \
-             whether that force belongs to a place, a moment or a speed."
-        }
-        Verdict::Measurement => {
-            "A second recording with another sensor, or of a mass released \
-             at a known place and moment, would show whether it is that."
-        }
-        Verdict::Errors => {
-            "A second recording by the same sensor would show whether its \
-             errors are always such ones."
-        }
-    };
-    Some(words.to_owned())
-}
-
-/// The recording that would tell the members of a group apart.
-fn separating(group: &[String], judged: &[Judged]) -> String {
-    let of = |name: &String| judged.iter().find(|m| m.name == *name);
-    let members: Vec<&Judged> = group.iter().filter_map(of).collect();
-    let has = |verdict: Verdict| {
-        members.iter().any(|m| verdict_of(m.kind) == verdict)
-    };
-    let along =
-        |axis: Axis| members.iter().any(|m| m.coordinate == Some(axis));
-    let words = if has(Verdict::Measurement) {
-        "A second recording with another sensor, or of a mass released at a \
-         known place and moment, would tell them apart."
-    } else if along(Axis::Time) && along(Axis::Place) {
-        "A recording from another start would tell them apart: what belongs \
-         to a place stays there, what belongs to a moment moves along."
-    } else {
-        "A recording at other speeds over the same ground, from a higher \
-         start or on another slope, would tell them apart."
-    };
-    words.to_owned()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn every_verdict_but_adequate_says_what_to_record_next() {
-        let judged = Judged { name: "surge".into(), ..Judged::default() };
-        let next = |verdict, group: &[&str]| {
-            let group: Vec<String> =
-                group.iter().map(|&name| name.into()).collect();
-            next_recording(verdict, &group, std::slice::from_ref(&judged))
-        };
-        assert_eq!(next(Verdict::Adequate, &["none"]), None);
-        for verdict in [
-            Verdict::MissingPhysics,
-            Verdict::Unexplained,
-            Verdict::Measurement,
-            Verdict::Errors,
-        ] {
-            let alone = next(verdict, &["surge"]).unwrap();
-            assert!(alone.contains("would show whether"), "{alone}");
-            let two = next(verdict, &["surge", "cohesion"]).unwrap();
-            assert!(two.contains("tell them apart"), "{two}");
-        }
-    }
 
     #[test]
     fn the_model_as_it_is_has_to_be_beaten_by_a_single_hypothesis() {
@@ -469,21 +303,5 @@ mod tests {
         assert_eq!(of(&all), Verdict::Measurement);
         let all = [(Hypothesis::Unknown, 0.5), (physics, 0.3)];
         assert_eq!(of(&all), Verdict::Unexplained);
-    }
-
-    #[test]
-    fn a_further_term_costs_what_the_odds_say() {
-        let names = ["none", "surge", "cohesion", "clock-offset", "unknown"];
-        let named =
-            |name: &str| Judged { name: name.into(), ..Judged::default() };
-        let all = names.map(named);
-        let even = Odds::new();
-        let price = Beforehand::of(&all, &even).price("surge");
-        assert!((price - 4.0_f64.ln()).abs() < 1e-12, "{price}");
-        // Three times as likely as each of three others, which are half as
-        // likely together as nothing.
-        let odds = Odds::from([("surge".into(), 3.0), ("none".into(), 2.0)]);
-        let price = Beforehand::of(&all, &odds).price("surge");
-        assert!((price - (2.0 * 6.0 / 3.0_f64).ln()).abs() < 1e-12, "{price}");
     }
 }

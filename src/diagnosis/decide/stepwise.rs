@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 use std::f64::consts::LN_10;
 
 use crate::diagnosis::decide::chosen::Chosen;
-use crate::diagnosis::decide::judge::Beforehand;
+use crate::diagnosis::decide::odds::Beforehand;
 use crate::diagnosis::evidence::attribute::Attribution;
 use crate::diagnosis::evidence::carried::Move;
 use crate::diagnosis::evidence::combination::{Combination, Known, Pursued};

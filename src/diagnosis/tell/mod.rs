@@ -3,6 +3,7 @@
 mod json;
 mod law;
 mod moment;
+pub(crate) mod next;
 pub(crate) mod noise;
 #[cfg(feature = "pages")]
 pub(crate) mod page;
