@@ -65,6 +65,15 @@ fn every_case_is_a_legal_event() {
 }
 
 #[test]
+fn a_mass_that_the_effect_holds_is_drawn_again() {
+    // Under the cohesion first drawn for the 23rd the second mass never moved,
+    // and a recording of it was refused.
+    for case in &cases(23, 64079, Mix::Two, Errors::Simple).unwrap() {
+        check(case, Errors::Simple);
+    }
+}
+
+#[test]
 fn the_seed_decides() {
     let some = cases(6, 5, Mix::One, Errors::Simple).unwrap();
     assert_eq!(some, cases(6, 5, Mix::One, Errors::Simple).unwrap());
