@@ -276,6 +276,12 @@ pub(crate) fn log_sum_exp(logs: impl Iterator<Item = f64> + Clone) -> f64 {
     largest + sum.ln()
 }
 
+/// The share of each in what logarithms add up to.
+pub(crate) fn shares(logs: impl Iterator<Item = f64> + Clone) -> Vec<f64> {
+    let total = log_sum_exp(logs.clone());
+    logs.map(|l| (l - total).exp()).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -50,10 +50,10 @@ pub use kolmogorov::{
     ChainComparison, KolmogorovSmirnov, between_chains, two_sample,
 };
 pub use lfo::{Lfo, leave_future_out};
-pub(crate) use loo::log_sum_exp;
 pub use loo::{
     Loo, k_threshold, loo, loo_of_chains, psis, psis_of_chains, sum_and_error,
 };
+pub(crate) use loo::{log_sum_exp, shares};
 pub(crate) use quantile::median;
 pub use quantile::quantile;
 pub use residual::{

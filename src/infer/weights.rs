@@ -5,7 +5,7 @@ use rand::RngExt;
 
 use super::log_sum_exp;
 use super::proposal::Particle;
-use crate::draws::psis;
+use crate::draws::{psis, shares};
 use crate::error::{Error, Result};
 use crate::seed::{Rng, Seed};
 
@@ -36,12 +36,6 @@ pub(in crate::infer) fn cut(found: &[Particle]) -> Vec<f64> {
 /// Their importance weights, adding up to 1.
 pub(in crate::infer) fn normalised(particles: &[Particle]) -> Vec<f64> {
     shares(particles.iter().map(Particle::log_weight))
-}
-
-/// The share of each in what logarithms add up to.
-fn shares(logs: impl Iterator<Item = f64> + Clone) -> Vec<f64> {
-    let total = log_sum_exp(logs.clone());
-    logs.map(|l| (l - total).exp()).collect()
 }
 
 /// The effective share of particles, and the Pareto tail index of their

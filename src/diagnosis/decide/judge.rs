@@ -9,7 +9,7 @@ use crate::diagnosis::evidence::table::Row;
 use crate::diagnosis::findings::{Judged, ParameterSummary, Variant, Verdict};
 use crate::diagnosis::hypothesis::{Hypothesis, NONE, UNKNOWN};
 use crate::diagnosis::locate::{FreeForce, NOUN, SAYS};
-use crate::draws::{log_sum_exp, summarise};
+use crate::draws::{log_sum_exp, shares, summarise};
 use crate::mechanism::{Candidate, Family, Mechanism, Noun};
 
 /// ln of the mean of exp.
@@ -223,11 +223,10 @@ fn unknown(rows: &[Seen<'_>]) -> Option<Judged> {
 
 fn weigh(all: &mut [Judged], odds: &Odds) {
     let beforehand = Beforehand::of(all, odds);
-    let logs: Vec<f64> =
-        all.iter().map(|m| beforehand.log(&m.name) + m.log_evidence).collect();
-    let total = log_sum_exp(logs.iter().copied());
-    for (one, log) in all.iter_mut().zip(logs) {
-        one.probability = (log - total).exp();
+    let log = |m: &Judged| beforehand.log(&m.name) + m.log_evidence;
+    let shares = shares(all.iter().map(log));
+    for (one, share) in all.iter_mut().zip(shares) {
+        one.probability = share;
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::diagnosis::findings::Judged;
 use crate::diagnosis::hypothesis::{NONE, UNKNOWN};
-use crate::draws::log_sum_exp;
+use crate::draws::shares;
 use crate::error::{Error, Result};
 use crate::mechanism::Mechanism;
 
@@ -88,12 +88,9 @@ pub fn prior_probabilities(
 ) -> Vec<(String, f64)> {
     let all = [&[NONE], &names(catalogue)[..]].concat();
     let beforehand = Beforehand::among(all.iter().copied(), odds);
-    let logs: Vec<f64> = all.iter().map(|name| beforehand.log(name)).collect();
-    let total = log_sum_exp(logs.iter().copied());
-    all.into_iter()
-        .zip(logs)
-        .map(|(name, log)| (name.to_owned(), (log - total).exp()))
-        .collect()
+    let shares = shares(all.iter().map(|name| beforehand.log(name)));
+    let names = all.into_iter().map(str::to_owned);
+    names.zip(shares).collect()
 }
 
 #[cfg(test)]
