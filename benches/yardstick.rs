@@ -51,10 +51,37 @@ fn against_c(folder: &Path, event: &Event, model: &reference::M1) {
         tell(&format!("one of many simulations over {how}"), &many);
     }
     let mh = compile(folder, "mh.c", "mh", &[]);
-    let chains: Vec<(f64, f64)> = (0..5)
-        .map(|_| (chains_seconds(model), c_chains_seconds(folder, &mh)))
-        .collect();
-    tell("4 x 50 000 Metropolis-Hastings steps, CPU", &chains);
+    chains_against_c(&|| c_chains_seconds(folder, &mh), model);
+}
+
+/// The steps alone, with what is said about their draws, and as the command
+/// does them: that one tunes its steps first.
+fn chains_against_c(in_c: &dyn Fn() -> f64, model: &reference::M1) {
+    let steps = "4 x 50 000 Metropolis-Hastings steps, CPU";
+    let runs: Vec<_> =
+        (0..5).map(|_| (chains_seconds(model), in_c())).collect();
+    let of = |part: usize| -> Vec<(f64, f64)> {
+        runs.iter().map(|(ours, c)| (ours[part], *c)).collect()
+    };
+    tell(steps, &of(0));
+    tell("the same with its summary", &of(1));
+    let Some(program) = option_env!("CARGO_BIN_EXE_couloir") else { return };
+    let whole: Vec<(f64, f64)> =
+        (0..5).map(|_| (command_seconds(program), in_c())).collect();
+    tell("`couloir calibrate`, with 4 x 5000 steps to tune", &whole);
+}
+
+/// CPU seconds of the command on one thread.
+fn command_seconds(program: &str) -> f64 {
+    let event = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/voellmy-21");
+    let mut command = Command::new(program);
+    command
+        .args(["calibrate", event, "--backend", "mh", "--draws", "50000"])
+        .arg("--quiet")
+        .env("RAYON_NUM_THREADS", "1");
+    let begun = Instant::now();
+    assert!(!output(&mut command).is_empty(), "the command says nothing");
+    begun.elapsed().as_secs_f64()
 }
 
 fn compile(
@@ -139,8 +166,9 @@ fn c_flow_seconds(folder: &Path, program: &Path, what: &str) -> f64 {
     ns.unwrap_or(f64::NAN) * 1e-9
 }
 
-/// CPU seconds of four chains of 50 000 steps on one thread.
-fn chains_seconds(model: &reference::M1) -> f64 {
+/// CPU seconds of four chains of 50 000 steps on one thread, without and with
+/// their summary.
+fn chains_seconds(model: &reference::M1) -> [f64; 2] {
     let effort = Effort::new().chains(4).draws(50_000).warmup(0);
     // As in the C program: a fixed proposal of the posterior's own shape.
     let sd = [0.0783, 132.3, 0.1865, 2.76];
@@ -176,19 +204,18 @@ fn c_chains_seconds(folder: &Path, program: &Path) -> f64 {
     seconds.and_then(|s| s.parse().ok()).unwrap_or(f64::NAN)
 }
 
-fn run(backend: &MetropolisHastings, model: &dyn Model) -> f64 {
+/// The seconds of the steps, and of all.
+fn run(backend: &MetropolisHastings, model: &dyn Model) -> [f64; 2] {
     let begun = Instant::now();
     let found = Posterior::new(model)
         .and_then(|p| infer(backend, &p, Seed::new(1), &Quiet));
-    assert!(found.is_ok());
-    begun.elapsed().as_secs_f64()
+    let steps = found.expect("the model can be sampled").cost.seconds;
+    [steps, begun.elapsed().as_secs_f64()]
 }
 
-fn on_threads(threads: usize, work: impl FnOnce() -> f64 + Send) -> f64 {
-    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-        Ok(pool) => pool.install(work),
-        Err(_) => f64::NAN,
-    }
+fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.expect("threads can be started").install(work)
 }
 
 fn gradient_ratio(model: &reference::M1) {
@@ -223,8 +250,9 @@ fn threads_ratio(model: &reference::M1) {
     let backend = MetropolisHastings::adaptive(&effort);
     let pairs: Vec<(f64, f64)> = (0..5)
         .map(|_| {
-            let one = on_threads(1, || run(&backend, model));
-            (one, on_threads(2, || run(&backend, model)))
+            let [_, one] = on_threads(1, || run(&backend, model));
+            let [_, two] = on_threads(2, || run(&backend, model));
+            (one, two)
         })
         .collect();
     tell("one thread over two, 4 chains", &pairs);

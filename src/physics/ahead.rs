@@ -11,12 +11,15 @@
     reason = "loops over an index become vectors, chains of iterators do not"
 )]
 
+use std::ops::Range;
+
 use super::eight::{EIGHT, Eight, atanhc};
 use super::exact::{FAR, Force, Pace};
 use super::resistance::Even;
+use super::skim::{Crossing, Entry, skim};
 use super::slopes::{Pieces, Slopes, Solved};
-use super::track::Columns;
-use crate::scalar::{Kind, Plain, Real};
+use super::track::{Columns, Piece, Track};
+use crate::scalar::{Kind, Plain, Real, fused};
 
 /// The crossings of up to eight pieces that follow each other.
 #[derive(Debug, Default)]
@@ -34,34 +37,104 @@ pub(super) struct Ahead {
 }
 
 impl Ahead {
-    /// The arrival at the far border of a piece, and the time it takes;
-    /// `None` where its end is not known to be a border. Pieces have to be
-    /// asked for one after the other, of one motion; `force` is what `even`
-    /// is on this one.
+    /// Crosses whole pieces as `skim` does, under a force that is the same on
+    /// each but for its slope; `entry` becomes how the last one was entered.
+    /// Pieces have to be asked for one after the other, of one motion.
+    ///
+    /// The loop that a simulation spends its time in: a function of its own,
+    /// so that its state is in registers whoever calls it.
+    #[inline(never)]
+    pub(super) fn skim<K: Kind>(
+        &mut self,
+        track: &Track,
+        even: &Even<K>,
+        entry: &mut Entry<K>,
+        last: usize,
+        time: f64,
+    ) -> Option<Crossing<K>> {
+        let pieces = track.pieces();
+        while entry.index < last {
+            let from = entry.index;
+            let known = self.known(track.columns(), last, entry, even);
+            let crossing = if known.is_empty() {
+                skim_one(pieces, even, entry, time)
+            } else {
+                self.pass(known, &pieces[from..], even, entry, time)
+            };
+            if crossing.is_some() || entry.index == from {
+                return crossing;
+            }
+        }
+        None
+    }
+
+    /// Knows no crossing any more: the force has changed.
+    pub(super) fn forget(&mut self) {
+        self.whole = 0;
+    }
+
+    /// Which of the eight are those that come next; none where their end is
+    /// not known to be a border.
     #[inline(always)]
-    pub(super) fn crossing<K: Kind>(
+    fn known<K: Kind>(
         &mut self,
         columns: &Columns,
-        index: usize,
-        pace: &Pace<K>,
+        last: usize,
+        entry: &Entry<K>,
         even: &Even<K>,
-        force: &Force<K>,
-    ) -> Option<(Pace<K>, Real<K>)> {
-        let mut at = index.wrapping_sub(self.first);
+    ) -> Range<usize> {
+        let mut at = entry.index.wrapping_sub(self.first);
         if at >= self.whole {
+            let pace = &entry.pace;
             let entered = (pace.u.value(), pace.w.value());
-            self.cross::<K>(columns, index, entered, &even.values());
+            self.cross::<K>(columns, entry.index, entered, &even.values());
             at = 0;
         }
-        if at >= self.whole.min(EIGHT) {
-            return None;
+        at..self.whole.min(EIGHT).min(at + last - entry.index)
+    }
+
+    /// Crosses pieces that are known.
+    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN ends it too")]
+    #[inline(always)]
+    fn pass<K: Kind>(
+        &self,
+        known: Range<usize>,
+        pieces: &[Piece],
+        even: &Even<K>,
+        entry: &mut Entry<K>,
+        time: f64,
+    ) -> Option<Crossing<K>> {
+        let Entry { mut index, mut pace, mut begins } = *entry;
+        for (i, piece) in known.zip(pieces) {
+            let force = even.on(piece);
+            let (arrival, after) = self.crossing(i, &pace, &force);
+            let ends = begins.value() + after.value();
+            if !(ends <= time) {
+                *entry = Entry { index, pace, begins };
+                return Some(Crossing { force, arrival, after, ends });
+            }
+            (index, pace) = (index + 1, arrival);
+            begins += after;
         }
-        let values = [self.u[at], self.w[at], self.after[at]];
+        *entry = Entry { index, pace, begins };
+        None
+    }
+
+    /// The arrival at the far border of one of the eight, and the time it
+    /// takes.
+    #[inline(always)]
+    fn crossing<K: Kind>(
+        &self,
+        i: usize,
+        pace: &Pace<K>,
+        force: &Force<K>,
+    ) -> (Pace<K>, Real<K>) {
+        let values = [self.u[i], self.w[i], self.after[i]];
         if K::DIFFERENTIATES {
-            return Some(self.slopes.crossing(at, values, pace, force));
+            return self.slopes.crossing(i, values, pace, force);
         }
         let [u, w, after] = values.map(Real::new);
-        Some((Pace { u, w }, after))
+        (Pace { u, w }, after)
     }
 
     #[inline(never)]
@@ -104,7 +177,7 @@ impl Ahead {
         let (mut before, mut entered) = (w, [w; EIGHT]);
         for i in 0..EIGHT {
             entered[i] = before;
-            before = before * pieces.decay[i] + gain[i];
+            before = fused(before, pieces.decay[i], gain[i]);
             self.w[i] = before;
         }
         entered
@@ -141,4 +214,21 @@ impl Ahead {
         };
         (0..EIGHT).take_while(crossed).count()
     }
+}
+
+/// Crosses one piece that is not among eight.
+#[inline(never)]
+fn skim_one<K: Kind>(
+    pieces: &[Piece],
+    even: &Even<K>,
+    entry: &mut Entry<K>,
+    time: f64,
+) -> Option<Crossing<K>> {
+    let cross = |piece: &Piece, entry: &Entry<K>| {
+        let force = even.on(piece);
+        (force, force.cross(entry.pace, Real::new(piece.length)))
+    };
+    let (next, crossing) = skim(pieces, *entry, entry.index + 1, time, cross);
+    *entry = next;
+    crossing
 }

@@ -13,7 +13,7 @@ use super::forces::{Axis, Forces, Moment, NEAR, nearer};
 use super::friction::{Friction, Rate, Varies};
 use super::motion::{Path, Release, Rest, State, Walker, first_piece, follow};
 use super::resistance::{Even, Resistance, Tilt};
-use super::skim::{Crossing, Entry, skim, skim_even};
+use super::skim::{Crossing, Entry, skim};
 use super::track::Piece;
 use crate::error::Stop;
 use crate::scalar::{Kind, Real};
@@ -155,7 +155,7 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         self.base = base.filter(|base| self.bends || !base.is_linear());
         let even = base.filter(|_| !self.varies);
         self.even = even.and_then(|base| Even::of(&base, &self.tilt));
-        self.ahead = Ahead::default();
+        self.ahead.forget();
     }
 
     /// The depth from a time on, and until when that holds.
@@ -437,11 +437,11 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
     /// Crosses whole pieces until one holds `time`, or something else than
     /// its border ends the leg, where no force varies.
     #[inline(always)]
-    fn skim_even(&mut self, time: f64, even: &Even<K>) -> Result<(), Stop> {
-        let (entry, until) = (self.entry(), self.until(time));
-        let (track, ahead) = (self.path.track, &mut self.ahead);
-        let (entry, crossing) =
-            skim_even(track, even, ahead, entry, self.whole, until);
+    fn skim_even(&mut self, time: f64) -> Result<(), Stop> {
+        let Some(even) = &self.even else { return self.advance() };
+        let (mut entry, until) = (self.entry(), self.until(time));
+        let (track, whole) = (self.path.track, self.whole);
+        let crossing = self.ahead.skim(track, even, &mut entry, whole, until);
         self.defect = None;
         self.enter(entry, crossing)
     }
@@ -606,12 +606,12 @@ impl<K: Kind> Walker<K> for ChangedWalker<'_, K> {
 
     #[inline(always)]
     fn leap(&mut self, time: f64) -> Result<(), Stop> {
-        match (self.even, self.border) {
-            (Some(even), Border::Piece) => self.skim_even(time, &even),
-            (None, Border::Piece) if self.base.is_some() => {
-                self.skim_varying(time)
-            }
-            _ => self.advance(),
+        if self.border != Border::Piece || self.base.is_none() {
+            self.advance()
+        } else if self.even.is_some() {
+            self.skim_even(time)
+        } else {
+            self.skim_varying(time)
         }
     }
 

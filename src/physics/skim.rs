@@ -1,10 +1,8 @@
-//! Crossing whole pieces of the track: the loop that a simulation spends its
-//! time in. Its state stays in registers.
+//! Crossing whole pieces of the track, one after the other. Under a force that
+//! is the same on each but for its slope, `ahead` crosses eight at a time.
 
-use super::ahead::Ahead;
 use super::exact::{Force, Pace};
-use super::resistance::Even;
-use super::track::{Piece, Track};
+use super::track::Piece;
 use crate::scalar::{Kind, Real};
 
 /// A mass that enters a piece.
@@ -61,25 +59,4 @@ pub(crate) fn skim<K: Kind>(
         pace = arrival;
     }
     (Entry { index: last.max(first), pace, begins }, None)
-}
-
-/// The same under a force that is the same on every piece but for its slope.
-#[inline(always)]
-pub(crate) fn skim_even<K: Kind>(
-    track: &Track,
-    even: &Even<K>,
-    ahead: &mut Ahead,
-    entry: Entry<K>,
-    last: usize,
-    time: f64,
-) -> (Entry<K>, Option<Crossing<K>>) {
-    let columns = track.columns();
-    let cross = |piece: &Piece, Entry { index, pace, .. }: &Entry<K>| {
-        let force = even.on(piece);
-        let crossed = ahead
-            .crossing(columns, *index, pace, even, &force)
-            .or_else(|| force.cross(*pace, Real::new(piece.length)));
-        (force, crossed)
-    };
-    skim(track.pieces(), entry, last, time, cross)
 }

@@ -36,7 +36,7 @@ impl Pieces {
     /// asked for.
     #[inline(always)]
     pub(super) fn new(
-        [pull, load, length]: [&Eight; 3],
+        [pull, load, length]: [Eight; 3],
         even: &Even<Plain>,
         sloped: bool,
     ) -> Self {
@@ -54,7 +54,7 @@ impl Pieces {
             spread_c[i] = spread_c[i] * length[i] * length[i] * 4.0;
             decay[i] = 1.0 - c * spread[i];
         }
-        Self { length: *length, a, c, x, spread, spread_c, decay }
+        Self { length, a, c, x, spread, spread_c, decay }
     }
 }
 

@@ -46,13 +46,13 @@ impl Columns {
     /// Pull, load and length of the eight pieces from `first` on; `None`
     /// where there are not as many before the endless one.
     #[inline]
-    pub(super) fn eight(&self, first: usize) -> Option<[&[f64; 8]; 3]> {
+    pub(super) fn eight(&self, first: usize) -> Option<[[f64; 8]; 3]> {
         if first + 8 >= self.length.len() {
             return None;
         }
         let rows = [&self.pull, &self.load, &self.length];
         let [pull, load, length] = rows.map(|row| row[first..].first_chunk());
-        Some([pull?, load?, length?])
+        Some([*pull?, *load?, *length?])
     }
 }
 

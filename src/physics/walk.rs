@@ -7,7 +7,7 @@ use super::motion::{
     Path, Release, Rest, State, Walker, first_piece, visit_times,
 };
 use super::resistance::Even;
-use super::skim::{Crossing, Entry, skim_even};
+use super::skim::{Crossing, Entry};
 use super::track::{Piece, Track};
 use crate::error::Stop;
 use crate::scalar::{Kind, Real};
@@ -265,10 +265,8 @@ impl<K: Kind, L: Friction<K>> Walker<K> for ExactWalker<'_, K, L> {
 
     #[inline(always)]
     fn leap(&mut self, time: f64) -> Result<(), Stop> {
-        match (self.even, self.end) {
-            (Some(even), End::Leaves { arrival, after }) => {
-                self.skim(time, &even, arrival, after)
-            }
+        match (&self.even, &self.end) {
+            (Some(_), End::Leaves { .. }) => self.skim(time),
             _ => self.advance(),
         }
     }
@@ -300,19 +298,17 @@ impl<K: Kind, L: Friction<K>> ExactWalker<'_, K, L> {
     /// Crosses whole pieces until one holds `time` or something else than a
     /// border ends the leg.
     #[inline(always)]
-    fn skim(
-        &mut self,
-        time: f64,
-        even: &Even<K>,
-        arrival: Pace<K>,
-        after: Real<K>,
-    ) -> Result<(), Stop> {
-        let begins = self.begins + after;
-        let entry = Entry { index: self.index + 1, pace: arrival, begins };
+    fn skim(&mut self, time: f64) -> Result<(), Stop> {
+        let (Some(even), End::Leaves { arrival, after }) =
+            (&self.even, &self.end)
+        else {
+            return self.advance();
+        };
+        let (index, begins) = (self.index + 1, self.begins + *after);
+        let mut entry = Entry { index, pace: *arrival, begins };
         let last = self.pieces.len() - 1;
-        let ahead = &mut self.ahead;
-        let (entry, crossing) =
-            skim_even(self.track, even, ahead, entry, last, time);
+        let track = self.track;
+        let crossing = self.ahead.skim(track, even, &mut entry, last, time);
         self.within = Real::new(0.0);
         let Some(Crossing { force, arrival, after, ends }) = crossing else {
             return self.land(entry.index, entry.pace, entry.begins);
