@@ -45,6 +45,7 @@ pub use progress::{Progress, Quiet, part};
 pub use proposal::Mixture;
 pub(crate) use proposal::student_constant;
 pub(crate) use remembered::Remembered;
+pub(crate) use search::Peaks;
 pub use search::SearchSpace;
 pub use suited::{Suited, suited};
 pub(crate) use weights::systematic;

@@ -68,7 +68,15 @@ pub(super) fn components(
     search.components()
 }
 
-/// About the log evidence, from the normal approximations of the peaks alone.
+/// What the peaks of a posterior say by their normal approximations.
+#[derive(Debug)]
+pub(crate) struct Peaks {
+    /// About the log evidence.
+    pub(crate) log: f64,
+    pub(crate) highest: Option<Peak>,
+}
+
+/// What peaks are found, and what they say.
 ///
 /// # Errors
 /// What no other parameter values would mend.
@@ -77,13 +85,14 @@ pub(super) fn outlook(
     space: &SearchSpace,
     schedule: &Schedule,
     seed: Seed,
-) -> Result<f64> {
+) -> Result<Peaks> {
     let mut search = Search::new(posterior, schedule);
     search.climbs.arrived = ALL_THE_WAY;
     search.climb_from_starts(space, seed)?;
     search.look(space)?;
     let logs = search.peaks.iter().filter_map(Peak::log_evidence);
-    Ok(super::log_sum_exp(logs.collect::<Vec<_>>().into_iter()))
+    let log = super::log_sum_exp(logs.collect::<Vec<_>>().into_iter());
+    Ok(Peaks { log, highest: search.peaks.into_iter().next() })
 }
 
 /// A gain by one step below which a climb ends whose peak is counted by its

@@ -1,7 +1,9 @@
 //! Several events taken apart: what each has to itself is fitted by itself.
 
 use crate::error::Result;
-use crate::infer::{Group, Grouped, Inference, LaplaceMixture, Quiet};
+use crate::infer::{
+    Group, Grouped, Inference, LaplaceMixture, Precision, Quiet,
+};
 use crate::mechanism::{Concern, Mechanism, Unknown};
 use crate::model::{Alone, AnyProgram, Common, Posterior, Program, With};
 use crate::seed::Seed;
@@ -94,15 +96,17 @@ impl<'a> Shares<'a> {
     }
 }
 
-/// Explores a program of several events with mechanisms, event by event.
+/// Evidence and draws of a program of several events with mechanisms, event by
+/// event.
 ///
 /// # Errors
 /// As [`LaplaceMixture::explore_groups`].
-pub(crate) fn explore(
+pub(crate) fn estimate(
     program: &dyn AnyProgram,
     mechanisms: &[&dyn Mechanism],
     whole: &Posterior<'_>,
     backend: &LaplaceMixture,
+    precision: Precision,
     seed: Seed,
 ) -> Result<Inference> {
     let events = program.events();
@@ -136,5 +140,5 @@ pub(crate) fn explore(
     let common = common.as_ref().map(|one| group((one, layout.common)));
     let groups = posteriors.iter().zip(layout.events).map(group).collect();
     let grouped = Grouped { whole, common, groups };
-    backend.explore_groups(&grouped, seed, &Quiet)
+    backend.estimate_groups(&grouped, precision, seed, &Quiet)
 }

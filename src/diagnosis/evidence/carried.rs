@@ -1,7 +1,7 @@
 //! From one noise to another: what evidences gain there.
 
 use crate::diagnosis::evidence::fit::{Fit, prospect};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::infer::{LaplaceMixture, Precision, SearchSpace};
 use crate::mechanism::Mechanism;
 use crate::model::{AnyProgram, Posterior, With};
@@ -26,7 +26,8 @@ impl Move<'_> {
             let drawn = self.drawn(old)?;
             let starts = self.carried(old, &drawn, new);
             let log = |posterior: &Posterior<'_>, starts| {
-                beginning_at(starts).outlook(posterior, seed)
+                let peaks = beginning_at(starts).outlook(posterior, seed)?;
+                Ok::<_, Error>(peaks.log)
             };
             let gain = log(new, starts)? - log(old, drawn)?;
             // Where no climb arrives nothing is promised.

@@ -151,10 +151,16 @@ impl<'a> Combination<'a> {
         }
         let (mechanisms, seed) = (&self.mechanisms[..], self.seed);
         let backend = LaplaceMixture::within(self.space.clone());
-        let with = With::new(program, mechanisms);
-        let posterior = Posterior::new(&with)?;
-        let found = prospect(program, mechanisms, backend, seed.child(3))?;
-        let found = found.joined(self.look, &posterior, seed.child(4))?;
+        let found = match self.look.searching(&backend) {
+            Some(several) => several,
+            None => {
+                let with = With::new(program, mechanisms);
+                let posterior = Posterior::new(&with)?;
+                let seed_of = seed.child(3);
+                let found = prospect(program, mechanisms, backend, seed_of)?;
+                found.joined(self.look, &posterior, seed.child(4))?
+            }
+        };
         let prospect =
             found.pursued(program, mechanisms, least, seed.child(2))?;
         if !prospect.may_reach(least) {

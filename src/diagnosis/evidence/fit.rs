@@ -2,12 +2,13 @@
 
 use rand::RngExt;
 
-use crate::diagnosis::evidence::apart::explore;
+use crate::diagnosis::evidence::apart;
 use crate::diagnosis::evidence::edges::on_line;
 use crate::draws::Draws;
 use crate::error::{Error, Result};
 use crate::infer::{
-    Backend, Frozen, Inference, LaplaceMixture, Peak, Precision, Quiet, climb,
+    Backend, Frozen, Inference, LaplaceMixture, Peak, Peaks, Precision, Quiet,
+    climb,
 };
 use crate::mechanism::{Mechanism, Unknown};
 use crate::model::{AnyProgram, Point, Posterior, Program, With};
@@ -49,6 +50,8 @@ pub(crate) struct Prospect {
     backend: LaplaceMixture,
     /// A proposal for all coordinates; several events have each their own.
     frozen: Option<Frozen>,
+    /// The highest peak of several events, on the real line.
+    highest: Option<Vec<f64>>,
     log: f64,
     /// How many parameters the mechanisms have.
     added: usize,
@@ -97,9 +100,18 @@ impl Prospect {
         let unseen = match &self.frozen {
             Some(frozen) if frozen.good => SETTLED,
             Some(frozen) if frozen.round > FEW_ROUNDS => OPEN,
-            _ => UNSEEN,
+            Some(_) => UNSEEN,
+            None => SEVERAL,
         };
         self.log + unseen
+    }
+
+    /// The same with a search of another kind in its estimate; `None` where the
+    /// estimate does not search by itself, as that of several events does.
+    pub(crate) fn searching(&self, backend: &LaplaceMixture) -> Option<Self> {
+        let is_of_several = self.frozen.is_none();
+        let backend = backend.clone();
+        is_of_several.then(|| Self { backend, ..self.clone() })
     }
 
     /// After learning more, as long as it may reach a threshold.
@@ -172,9 +184,32 @@ impl Prospect {
             Some(frozen) => {
                 backend.estimate(&posterior, frozen, precision, seed, &Quiet)
             }
-            None => explore(program, mechanisms, &posterior, backend, seed),
+            None => apart::estimate(
+                program, mechanisms, &posterior, backend, precision, seed,
+            ),
         };
-        fit_of(&posterior, found?, with.added())
+        let mut fit = fit_of(&posterior, found?, with.added())?;
+        if let Some(highest) = &self.highest {
+            fit.best = higher(&posterior, fit.best, highest)?;
+        }
+        Ok(fit)
+    }
+
+    /// About where the same program and mechanisms are best, on the real line.
+    ///
+    /// # Errors
+    /// A model that fails.
+    pub(crate) fn best(
+        &self,
+        program: &dyn AnyProgram,
+        mechanisms: &[&dyn Mechanism],
+        seed: Seed,
+    ) -> Result<Vec<f64>> {
+        if let Some(highest) = &self.highest {
+            return Ok(highest.clone());
+        }
+        let fit = self.fit(program, mechanisms, Precision::Rough, seed)?;
+        Ok(fit.best)
     }
 }
 
@@ -183,6 +218,9 @@ impl Prospect {
 const UNSEEN: f64 = 4.0;
 const OPEN: f64 = 3.0;
 const SETTLED: f64 = 1.0;
+/// How much more the peaks of several events may: of 55 fits of five avalanches
+/// together 50 held up to 8 more than their peaks said, and two 19 more.
+const SEVERAL: f64 = 10.0;
 
 /// From the middles of how many components a peak is sought: a climb from one
 /// may end where the density bends.
@@ -205,14 +243,16 @@ pub(crate) fn prospect(
     let posterior = Posterior::new(&with)?;
     let added = with.added();
     if program.events() > 1 {
-        let log = backend.outlook(&posterior, seed)?;
-        return Ok(Prospect { backend, frozen: None, log, added });
+        let Peaks { log, highest } = backend.outlook(&posterior, seed)?;
+        let highest = highest.map(|peak| peak.line.as_slice().to_vec());
+        return Ok(Prospect { backend, frozen: None, highest, log, added });
     }
     let found = backend.searched(&posterior, seed.child(0))?;
     let (schedule, seed) = (&backend.schedule, seed.child(1));
     let frozen = found.learned(&posterior, schedule, FEW_ROUNDS, seed)?;
     let log = frozen.log;
-    Ok(Prospect { backend, frozen: Some(frozen), log, added })
+    let (frozen, highest) = (Some(frozen), None);
+    Ok(Prospect { backend, frozen, highest, log, added })
 }
 
 /// Fits a program with mechanisms, looking for modes as told.
@@ -229,7 +269,12 @@ pub fn fit(
     let posterior = Posterior::new(&with)?;
     let found = match program.events() {
         1 => backend.explore(&posterior, seed, &Quiet)?,
-        _ => explore(program, mechanisms, &posterior, backend, seed)?,
+        _ => {
+            let sharp = Precision::Sharp;
+            apart::estimate(
+                program, mechanisms, &posterior, backend, sharp, seed,
+            )?
+        }
     };
     fit_of(&posterior, found, with.added())
 }
@@ -259,6 +304,20 @@ fn peak(posterior: &Posterior<'_>, draws: &Draws) -> Result<Vec<f64>> {
     let likeliest = likeliest(posterior, draws)?;
     let peak = climb(posterior, &likeliest)?;
     Ok(peak.map_or(likeliest, |peak| peak.line.as_slice().to_vec()))
+}
+
+/// The higher of two places on the real line.
+fn higher(
+    posterior: &Posterior<'_>,
+    first: Vec<f64>,
+    second: &[f64],
+) -> Result<Vec<f64>> {
+    let height = |z: &[f64]| {
+        let density = posterior.density(Point::Line(z))?;
+        Ok::<_, Error>(density.on_line())
+    };
+    let is_second = height(second)? > height(&first)?;
+    Ok(if is_second { second.to_vec() } else { first })
 }
 
 /// The draw with the highest density, on the real line.
@@ -357,7 +416,7 @@ mod tests {
         let near = |x: f64, log: f64| {
             let frozen = Some(proposal_for_hill(x));
             let backend = LaplaceMixture::default();
-            Prospect { backend, frozen, log, added: 0 }
+            Prospect { backend, frozen, highest: None, log, added: 0 }
         };
         let low = near(-1.0, between(-3.0, 0.0));
         let high = near(1.0, between(0.0, 4.0));

@@ -14,7 +14,7 @@ use super::fit::{Prospect, prospect};
 use crate::diagnosis::locate::{Outlook, no_density, outlook};
 use crate::draws::log_sum_exp;
 use crate::error::Result;
-use crate::infer::{LaplaceMixture, Precision, SearchSpace};
+use crate::infer::{LaplaceMixture, SearchSpace};
 use crate::mechanism::Extent;
 use crate::model::{AnyProgram, Posterior};
 use crate::noise::{self, Form};
@@ -189,8 +189,7 @@ impl<'a> Survey<'a, '_> {
         };
         let search = LaplaceMixture::within(space).quick();
         let none = prospect(program, &[], search, seed.child(0))?;
-        let rough = Precision::Rough;
-        let own = none.fit(program, &[], rough, seed.child(2))?.best;
+        let own = none.best(program, &[], seed.child(2))?;
         let owns = beside.owns(&own, seed.child(5))?;
         let least = f64::NEG_INFINITY;
         let open = outlook(program, self.extent, &owns, least, seed.child(3))?;

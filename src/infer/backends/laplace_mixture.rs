@@ -14,7 +14,7 @@ use crate::infer::adapt::Frozen;
 use crate::infer::estimate::{Precision, estimated};
 use crate::infer::proposal::{Component, Mixture};
 use crate::infer::schedule::Schedule;
-use crate::infer::search::{SearchSpace, components, outlook};
+use crate::infer::search::{Peaks, SearchSpace, components, outlook};
 use crate::infer::temper::tempered;
 use crate::infer::{Backend, Effort, Inference, Progress};
 use crate::model::Posterior;
@@ -159,7 +159,7 @@ impl LaplaceMixture {
     }
 
     /// About the log evidence, from the normal approximations of the peaks
-    /// alone.
+    /// alone, and the highest of these.
     ///
     /// # Errors
     /// What no other parameter values would mend.
@@ -167,7 +167,7 @@ impl LaplaceMixture {
         &self,
         posterior: &Posterior<'_>,
         seed: Seed,
-    ) -> Result<f64> {
+    ) -> Result<Peaks> {
         outlook(posterior, &self.space, &self.schedule, seed)
     }
 }

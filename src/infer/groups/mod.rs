@@ -45,17 +45,26 @@ pub use group::{Group, Grouped};
 use inner::Inner;
 use region::Region;
 
-/// How many draws of what is in common are made: each costs a climb and dozens
-/// of draws in every group.
-const EFFORT: Effort =
-    Effort { learning: 200, rounds: 6, last: (300, 3000), error: 0.03 };
+/// Draws of what is in common in a round of learning, the fewest that make an
+/// estimate, and the most of a fair and of a sharp one: each costs a climb and
+/// dozens of draws in every group.
+const LEARNING: usize = 200;
+const FEWEST: usize = 300;
+const FAIR: usize = 1000;
+const SHARP: usize = 3000;
+
+/// The most rounds of learning, and those of what is estimated roughly.
+const ROUNDS: u64 = 6;
+const FEW_ROUNDS: u64 = 2;
 
 /// The effective share at which a proposal for all coordinates at once does:
 /// nested, a draw costs dozens of times as much.
 const JOINT: f64 = 0.25;
 
-/// After how many rounds it is given up.
+/// After how many rounds it is given up, and after how many where no tenth of
+/// that share is in sight.
 const JOINT_ROUNDS: u64 = 6;
+const HOPELESS_ROUNDS: u64 = 3;
 
 /// How the evidence of groups with something in common is found.
 const NESTED: &str = "importance sampling of what is in common, and of each \
@@ -72,13 +81,37 @@ impl LaplaceMixture {
         seed: Seed,
         progress: &dyn Progress,
     ) -> Result<Inference> {
+        self.estimate_groups(grouped, Precision::Sharp, seed, progress)
+    }
+
+    /// The same, as sharp as asked.
+    ///
+    /// # Errors
+    /// As [`Backend::explore`].
+    pub(crate) fn estimate_groups(
+        &self,
+        grouped: &Grouped<'_>,
+        precision: Precision,
+        seed: Seed,
+        progress: &dyn Progress,
+    ) -> Result<Inference> {
         grouped.whole.require_proper("the mixture of peaks")?;
-        match &grouped.common {
-            None => self.product(grouped, seed, progress),
-            Some(common) => {
-                self.within_common(grouped, common, seed, progress)
-            }
-        }
+        let Some(common) = &grouped.common else {
+            return self.product(grouped, seed, progress);
+        };
+        let effort = self.effort(precision);
+        self.within_common(grouped, common, effort, seed, progress)
+    }
+
+    /// How many draws of what is in common are made.
+    fn effort(&self, precision: Precision) -> Effort {
+        let (rounds, most) = match precision {
+            Precision::Rough => (FEW_ROUNDS, FEWEST),
+            Precision::Fair => (ROUNDS, FAIR),
+            Precision::Sharp => (ROUNDS, SHARP),
+        };
+        let (last, error) = ((FEWEST, most), self.schedule.error);
+        Effort { learning: LEARNING, rounds, last, error }
     }
 
     /// Groups with nothing in common: each on its own.
@@ -152,6 +185,7 @@ impl LaplaceMixture {
         &self,
         grouped: &Grouped<'_>,
         common: &Group<'_>,
+        effort: Effort,
         seed: Seed,
         progress: &dyn Progress,
     ) -> Result<Inference> {
@@ -160,10 +194,15 @@ impl LaplaceMixture {
         let whole = Posterior::new(&assembly)?;
         let schedule = Schedule { good_share: JOINT, ..self.schedule };
         let parts = components(&whole, &self.space, &schedule, seed.child(0))?;
-        let proposal = mixture(&parts)?;
-        let (rounds, seed_of) = (JOINT_ROUNDS, seed.child(2));
-        let joint = Frozen::new(proposal)
-            .learned(&whole, &schedule, rounds, seed_of)?;
+        let mut joint = Frozen::new(mixture(&parts)?);
+        for rounds in [HOPELESS_ROUNDS, JOINT_ROUNDS] {
+            let seed_of = seed.child(2).child(rounds);
+            joint = joint.learned(&whole, &schedule, rounds, seed_of)?;
+            let share = 1.0 / (1.0 + joint.excess);
+            if share < 0.1 * JOINT {
+                break;
+            }
+        }
         if joint.good {
             let (whole, sharp) = (grouped.whole, Precision::Sharp);
             let seed = seed.child(3);
@@ -172,7 +211,7 @@ impl LaplaceMixture {
                 return Ok(found.made);
             }
         }
-        self.nested(grouped, common, &parts, seed.child(1), progress)
+        self.nested(grouped, common, &parts, effort, seed.child(1))
     }
 
     /// What is in common, and each group given that.
@@ -181,8 +220,8 @@ impl LaplaceMixture {
         grouped: &Grouped<'_>,
         common: &Group<'_>,
         parts: &[Component],
+        effort: Effort,
         seed: Seed,
-        progress: &dyn Progress,
     ) -> Result<Inference> {
         let marginals: Vec<Component> =
             parts.iter().map(|part| part.marginal(&common.places)).collect();
@@ -190,9 +229,8 @@ impl LaplaceMixture {
         let regions = self.regions(parts, common, &inner, seed.child(0))?;
         let outer = Given { common, inner, regions };
         let proposal = mixture(&marginals)?;
-        let learned = learn(&outer, proposal, EFFORT, seed.child(1))?;
-        progress.advance(EFFORT.learning as u64);
-        let found = integrated(&outer, &learned, EFFORT, seed.child(2))?;
+        let learned = learn(&outer, proposal, effort, seed.child(1))?;
+        let found = integrated(&outer, &learned, effort, seed.child(2))?;
         let rows = found
             .draws(seed.child(3))
             .into_iter()

@@ -92,9 +92,11 @@ fn one_within_the_other_is_as_all_at_once() {
         let LaplaceMixture { space, schedule } = &laplace;
         let parts = components(&whole, space, schedule, seed.child(0));
         let parts = parts.unwrap();
+        let effort = laplace.effort(Precision::Sharp);
         let nested =
-            laplace.nested(grouped, common, &parts, seed.child(1), &Quiet);
-        let either = laplace.within_common(grouped, common, seed, &Quiet);
+            laplace.nested(grouped, common, &parts, effort, seed.child(1));
+        let either =
+            laplace.within_common(grouped, common, effort, seed, &Quiet);
         let [nested, either] = [nested, either].map(|found| {
             let found = found.unwrap();
             assert_eq!(found.warnings, Vec::<String>::new());
