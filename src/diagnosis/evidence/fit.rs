@@ -218,8 +218,8 @@ impl Prospect {
 const UNSEEN: f64 = 4.0;
 const OPEN: f64 = 3.0;
 const SETTLED: f64 = 1.0;
-/// How much more the peaks of several events may: of 55 fits of five avalanches
-/// together 50 held up to 8 more than their peaks said, and two 19 more.
+/// How much more the peaks of several events may: of 58 fits of five avalanches
+/// together 53 held up to 8 more than their peaks said, two 18 and 19 more.
 const SEVERAL: f64 = 10.0;
 
 /// From the middles of how many components a peak is sought: a climb from one
