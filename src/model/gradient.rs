@@ -10,10 +10,10 @@ use crate::error::{Error, Result};
 use crate::scalar::{Forward, Grad, Real, Recording, Reverse};
 
 /// How many parameters a model has from which on the tape is faster. It costs
-/// 3 to 8 densities, and a pass of 8 directions costs 2 to 3: one or two
-/// passes are less or as much, three of them are seldom less and up to twice
-/// as much (`cargo bench --bench growth -- parameters events`).
-const REVERSE_FROM: usize = 17;
+/// 5 to 15 densities, and a pass of 8 directions 1.5 to 3: three passes are as
+/// much or less, four are a third more where the tape is fast and half as much
+/// where it is slow (`cargo bench --bench growth -- parameters events`).
+const REVERSE_FROM: usize = 25;
 
 /// The density at a place on the real line, and the gradient of its weighted
 /// logarithm there.
