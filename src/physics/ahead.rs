@@ -59,7 +59,7 @@ impl Ahead {
             let crossing = if known.is_empty() {
                 skim_one(pieces, even, entry, time)
             } else {
-                self.pass(known, &pieces[from..], even, entry, time)
+                self.pass(known, pieces, even, entry, time)
             };
             if crossing.is_some() || entry.index == from {
                 return crossing;
@@ -94,7 +94,6 @@ impl Ahead {
     }
 
     /// Crosses pieces that are known.
-    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN ends it too")]
     #[inline(always)]
     fn pass<K: Kind>(
         &self,
@@ -104,20 +103,15 @@ impl Ahead {
         entry: &mut Entry<K>,
         time: f64,
     ) -> Option<Crossing<K>> {
-        let Entry { mut index, mut pace, mut begins } = *entry;
-        for (i, piece) in known.zip(pieces) {
+        let (from, last) = (entry.index, entry.index + known.len());
+        let cross = |piece: &Piece, Entry { index, pace, .. }: &Entry<K>| {
             let force = even.on(piece);
-            let (arrival, after) = self.crossing(i, &pace, &force);
-            let ends = begins.value() + after.value();
-            if !(ends <= time) {
-                *entry = Entry { index, pace, begins };
-                return Some(Crossing { force, arrival, after, ends });
-            }
-            (index, pace) = (index + 1, arrival);
-            begins += after;
-        }
-        *entry = Entry { index, pace, begins };
-        None
+            let at = known.start + index - from;
+            (force, Some(self.crossing(at, pace, &force)))
+        };
+        let (next, crossing) = skim(pieces, *entry, last, time, cross);
+        *entry = next;
+        crossing
     }
 
     /// The arrival at the far border of one of the eight, and the time it

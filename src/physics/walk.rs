@@ -265,10 +265,7 @@ impl<K: Kind, L: Friction<K>> Walker<K> for ExactWalker<'_, K, L> {
 
     #[inline(always)]
     fn leap(&mut self, time: f64) -> Result<(), Stop> {
-        match (&self.even, &self.end) {
-            (Some(_), End::Leaves { .. }) => self.skim(time),
-            _ => self.advance(),
-        }
+        self.skim(time)
     }
 
     #[inline(always)]
@@ -296,7 +293,8 @@ impl<K: Kind, L: Friction<K>> Walker<K> for ExactWalker<'_, K, L> {
 
 impl<K: Kind, L: Friction<K>> ExactWalker<'_, K, L> {
     /// Crosses whole pieces until one holds `time` or something else than a
-    /// border ends the leg.
+    /// border ends the leg, where pieces can be crossed so; else goes on by one
+    /// leg.
     #[inline(always)]
     fn skim(&mut self, time: f64) -> Result<(), Stop> {
         let (Some(even), End::Leaves { arrival, after }) =
