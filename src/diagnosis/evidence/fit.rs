@@ -48,13 +48,20 @@ impl Fit {
 #[derive(Debug, Clone)]
 pub(crate) struct Prospect {
     backend: LaplaceMixture,
-    /// A proposal for all coordinates; several events have each their own.
-    frozen: Option<Frozen>,
-    /// The highest peak of several events, on the real line.
-    highest: Option<Vec<f64>>,
+    found: Found,
     log: f64,
     /// How many parameters the mechanisms have.
     added: usize,
+}
+
+/// What a search leaves for an estimate to begin from.
+#[derive(Debug, Clone)]
+enum Found {
+    /// Of one event, a proposal for all coordinates.
+    Proposal(Frozen),
+    /// Of several, each of which gets a proposal of its own, the highest peak
+    /// on the real line, if there is any.
+    Highest(Option<Vec<f64>>),
 }
 
 impl Prospect {
@@ -74,7 +81,7 @@ impl Prospect {
         program: &dyn AnyProgram,
         mechanisms: &[&dyn Mechanism],
     ) -> Result<Option<(Vec<f64>, Vec<f64>)>> {
-        let Some(frozen) = &self.frozen else { return Ok(None) };
+        let Found::Proposal(frozen) = &self.found else { return Ok(None) };
         let with = With::new(program, mechanisms);
         let posterior = Posterior::new(&with)?;
         let mut highest: Option<Peak> = None;
@@ -97,11 +104,11 @@ impl Prospect {
 
     /// The most, in ln, that it may hold.
     pub(crate) fn most(&self) -> f64 {
-        let unseen = match &self.frozen {
-            Some(frozen) if frozen.good => SETTLED,
-            Some(frozen) if frozen.round > FEW_ROUNDS => OPEN,
-            Some(_) => UNSEEN,
-            None => SEVERAL,
+        let unseen = match &self.found {
+            Found::Proposal(frozen) if frozen.good => SETTLED,
+            Found::Proposal(frozen) if frozen.round > FEW_ROUNDS => OPEN,
+            Found::Proposal(_) => UNSEEN,
+            Found::Highest(_) => SEVERAL,
         };
         self.log + unseen
     }
@@ -109,9 +116,13 @@ impl Prospect {
     /// The same with a search of another kind in its estimate; `None` where the
     /// estimate does not search by itself, as that of several events does.
     pub(crate) fn searching(&self, backend: &LaplaceMixture) -> Option<Self> {
-        let is_of_several = self.frozen.is_none();
-        let backend = backend.clone();
-        is_of_several.then(|| Self { backend, ..self.clone() })
+        match self.found {
+            Found::Proposal(_) => None,
+            Found::Highest(_) => {
+                let backend = backend.clone();
+                Some(Self { backend, ..self.clone() })
+            }
+        }
     }
 
     /// After learning more, as long as it may reach a threshold.
@@ -129,15 +140,16 @@ impl Prospect {
         let posterior = Posterior::new(&with)?;
         let most = self.backend.schedule.rounds;
         for rounds in [FEW_ROUNDS + 2, most] {
-            let Some(frozen) = self.frozen.clone() else { break };
+            let Found::Proposal(frozen) = &self.found else { break };
             if frozen.good || !self.may_reach(threshold) {
                 break;
             }
             let (schedule, seed) =
                 (&self.backend.schedule, seed.child(rounds));
+            let frozen = frozen.clone();
             let next = frozen.learned(&posterior, schedule, rounds, seed)?;
             self.log = next.log;
-            self.frozen = Some(next);
+            self.found = Found::Proposal(next);
         }
         Ok(self)
     }
@@ -153,7 +165,8 @@ impl Prospect {
         posterior: &Posterior<'_>,
         seed: Seed,
     ) -> Result<Self> {
-        let (Some(first), Some(second)) = (&self.frozen, other.frozen) else {
+        let both = (&self.found, other.found);
+        let (Found::Proposal(first), Found::Proposal(second)) = both else {
             return Ok(self);
         };
         if other.log > self.log {
@@ -161,7 +174,7 @@ impl Prospect {
             let both = second.beside(first);
             let both = both.learned(posterior, schedule, FEW_ROUNDS, seed)?;
             self.log = both.log;
-            self.frozen = Some(both);
+            self.found = Found::Proposal(both);
         }
         Ok(self)
     }
@@ -180,16 +193,16 @@ impl Prospect {
         let with = With::new(program, mechanisms);
         let posterior = Posterior::new(&with)?;
         let backend = &self.backend;
-        let found = match &self.frozen {
-            Some(frozen) => {
+        let found = match &self.found {
+            Found::Proposal(frozen) => {
                 backend.estimate(&posterior, frozen, precision, seed, &Quiet)
             }
-            None => apart::estimate(
+            Found::Highest(_) => apart::estimate(
                 program, mechanisms, &posterior, backend, precision, seed,
             ),
         };
         let mut fit = fit_of(&posterior, found?, with.added())?;
-        if let Some(highest) = &self.highest {
+        if let Found::Highest(Some(highest)) = &self.found {
             fit.best = higher(&posterior, fit.best, highest)?;
         }
         Ok(fit)
@@ -205,7 +218,7 @@ impl Prospect {
         mechanisms: &[&dyn Mechanism],
         seed: Seed,
     ) -> Result<Vec<f64>> {
-        if let Some(highest) = &self.highest {
+        if let Found::Highest(Some(highest)) = &self.found {
             return Ok(highest.clone());
         }
         let fit = self.fit(program, mechanisms, Precision::Rough, seed)?;
@@ -245,14 +258,14 @@ pub(crate) fn prospect(
     if program.events() > 1 {
         let Peaks { log, highest } = backend.outlook(&posterior, seed)?;
         let highest = highest.map(|peak| peak.line.as_slice().to_vec());
-        return Ok(Prospect { backend, frozen: None, highest, log, added });
+        let found = Found::Highest(highest);
+        return Ok(Prospect { backend, found, log, added });
     }
-    let found = backend.searched(&posterior, seed.child(0))?;
+    let frozen = backend.searched(&posterior, seed.child(0))?;
     let (schedule, seed) = (&backend.schedule, seed.child(1));
-    let frozen = found.learned(&posterior, schedule, FEW_ROUNDS, seed)?;
-    let log = frozen.log;
-    let (frozen, highest) = (Some(frozen), None);
-    Ok(Prospect { backend, frozen, highest, log, added })
+    let frozen = frozen.learned(&posterior, schedule, FEW_ROUNDS, seed)?;
+    let (log, found) = (frozen.log, Found::Proposal(frozen));
+    Ok(Prospect { backend, found, log, added })
 }
 
 /// Fits a program with mechanisms, looking for modes as told.
@@ -414,9 +427,9 @@ mod tests {
     fn two_searches_together_hold_what_either_found() {
         let posterior = Posterior::new(&Hills).unwrap();
         let near = |x: f64, log: f64| {
-            let frozen = Some(proposal_for_hill(x));
+            let found = Found::Proposal(proposal_for_hill(x));
             let backend = LaplaceMixture::default();
-            Prospect { backend, frozen, highest: None, log, added: 0 }
+            Prospect { backend, found, log, added: 0 }
         };
         let low = near(-1.0, between(-3.0, 0.0));
         let high = near(1.0, between(0.0, 4.0));
@@ -424,7 +437,7 @@ mod tests {
             a.clone().joined(b.clone(), &posterior, Seed::new(3)).unwrap()
         };
         let at = |one: &Prospect, x: f64| {
-            let frozen = one.frozen.as_ref().unwrap();
+            let Found::Proposal(frozen) = &one.found else { unreachable!() };
             frozen.mixture.log_density(&[x, 0.0])
         };
         let both = joined(&low, &high);

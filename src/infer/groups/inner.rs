@@ -16,8 +16,10 @@ use crate::infer::weights::systematic;
 use crate::model::{Point, Posterior, Slice};
 use crate::seed::{Rng, Seed};
 
-/// How many draws estimate what a group holds at given common coordinates.
-const INNER: usize = 40;
+/// How many draws estimate what a group holds at given common coordinates. The
+/// relative variance of one is 0.7 to 1.4 in the median, that of what is drawn
+/// in common 1.5 and more: of more draws within, fewer could be made of that.
+const INNER: usize = 16;
 /// How many climbs from draws of the prior look for other modes of a group
 /// there, and the effective share at which its mixture is good enough.
 const STARTS: usize = 4;
