@@ -164,7 +164,9 @@ impl Subject<'_> {
                 *log = f64::NEG_INFINITY;
             }
         }
-        Ok(taken(named, &logs))
+        let row = taken(named, &logs);
+        let logs = self.log_of_noises(table, options);
+        Ok(table.without_idle(row, &logs))
     }
 
     fn log_of_noises(&self, table: &Table<'_>, options: &Options) -> Vec<f64> {

@@ -55,6 +55,17 @@ fn what_a_tangent_alone_promises_is_no_force() {
     assert_eq!(found.group, ["friction-hardening"]);
 }
 
+/// A mass that is already moving is no force of free form: beside one, errors
+/// with a memory were the likelier by far, and were said to be there.
+#[test]
+fn errors_that_a_mechanism_explains_are_independent_again() {
+    let file = challenge_case(71311, "case-011");
+    let found = diagnosed(file, None);
+    assert_eq!(found.group, ["initial-velocity"]);
+    assert_eq!(found.noise[0].name, "iid");
+    assert!(found.noise[0].probability > 0.5);
+}
+
 /// The car's mass [kg], frontal area [m2] and the air's density [kg/m3], by
 /// the report that the speeds are from.
 const CAR: (f64, f64, f64) = (1910.0, 2.15, 1.06);

@@ -29,7 +29,7 @@ const WITH_DRIFT: [&str; 1] = ["matern32 + ou"];
 /// In log10: how far below the best a noise may be that is kept.
 pub(crate) const NEAR: f64 = 2.5;
 /// In ln: by how much a noise must have more evidence than simpler ones.
-const MORE: f64 = 1.0;
+pub(super) const MORE: f64 = 1.0;
 /// The most noises that mechanisms are weighed under; the named one may come
 /// on top.
 const MOST: usize = 3;
@@ -69,13 +69,16 @@ impl Noisy<'_> {
 }
 
 /// The noises that a model is weighed under.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Noises<'a> {
     /// Those that are kept, most evidence first, that of the named one counted
     /// tenfold.
     pub(crate) kept: Vec<Noisy<'a>>,
     /// The named one, where it is not among them.
     pub(crate) dropped: Option<Noisy<'a>>,
+    /// Others that are simpler than the first of them. What a mechanism
+    /// explains, and no force of free form does, need not be remembered.
+    pub(super) simpler: Vec<Weighed<'a>>,
 }
 
 /// Weighs noises beside the named one, and keeps those that do nearly as well
@@ -238,22 +241,31 @@ fn kept(mut all: Vec<Weighed<'_>>, seed: Seed) -> Result<Noises<'_>> {
             most.push(name);
         }
     }
-    let (mut kept, mut dropped) = (Vec::new(), None);
+    let first = all.iter().find(|one| most.contains(&one.name));
+    let first = first.map(Weighed::form);
+    let mut noises = Noises::default();
     for one in all {
-        let seed = seed.called(&one.name).child(4);
         let is_near = near.contains(&one.name);
         let is_named = one.program.is_named();
+        let is_simpler =
+            first.as_ref().is_some_and(|f| one.form().is_simpler_than(f));
         if most.contains(&one.name) || (is_near && is_named) {
-            kept.push(fitted(one, seed)?);
+            noises.kept.push(one.fitted(seed)?);
         } else if is_named {
-            dropped = Some(fitted(one, seed)?);
+            noises.dropped = Some(one.fitted(seed)?);
+        } else if is_simpler {
+            noises.simpler.push(one);
         }
     }
-    Ok(Noises { kept, dropped })
+    Ok(noises)
 }
 
-fn fitted(one: Weighed<'_>, seed: Seed) -> Result<Noisy<'_>> {
-    let Weighed { name, program, found } = one;
-    let none = fit(&*program, &[], &LaplaceMixture::default(), seed)?;
-    Ok(Noisy { name, program, none, open: found.open })
+impl<'a> Weighed<'a> {
+    /// With the model without physics fitted under it.
+    pub(super) fn fitted(self, seed: Seed) -> Result<Noisy<'a>> {
+        let Self { name, program, found } = self;
+        let seed = seed.called(&name).child(4);
+        let none = fit(&*program, &[], &LaplaceMixture::default(), seed)?;
+        Ok(Noisy { name, program, none, open: found.open })
+    }
 }

@@ -74,6 +74,12 @@ pub(super) struct Found {
 }
 
 impl<'a> Weighed<'a> {
+    /// Where the model's own parameters are likely under it, on the real line:
+    /// without physics, and with a force.
+    pub(super) fn own(&self) -> [&[f64]; 2] {
+        [&self.found.own, &self.found.open.own]
+    }
+
     pub(super) fn form(&self) -> Form {
         Form::of(&self.name)
     }

@@ -1,12 +1,15 @@
 //! The two-way table: every mechanism under every noise that is kept.
 
+use std::f64::consts::LN_10;
+
 use super::attribute::{Attribution, Care, Known, attribute_beside};
 use super::carried::Move;
-use super::noises::{Noises, Noisy};
+use super::noises::{MORE, NEAR, Noises, Noisy};
 use crate::error::{Error, Result};
 use crate::infer::Progress;
 use crate::mechanism::{Extent, Mechanism};
-use crate::model::Program;
+use crate::model::{AnyProgram, Program};
+use crate::noise::Form;
 use crate::parallel;
 use crate::seed::Seed;
 
@@ -38,7 +41,8 @@ pub(crate) struct Table<'a> {
 
 impl<'a> Table<'a> {
     /// Weighs every mechanism and the free-form force under the likeliest
-    /// noise, and what they promise from there under the others.
+    /// noise, and what they promise from there under the others, with those
+    /// that do now that mechanisms are known.
     ///
     /// # Errors
     /// An improper prior, or a model that fails.
@@ -50,13 +54,30 @@ impl<'a> Table<'a> {
         seed: Seed,
         progress: &dyn Progress,
     ) -> Result<Self> {
-        let Noises { kept, dropped } = noises;
+        let Noises { kept, dropped, simpler } = noises;
         let mut kept = kept.into_iter();
         let first = Row::bare(kept.next().ok_or_else(no_noise)?);
-        let mut table = Self { rows: vec![first], dropped };
+        let mut table = Self { rows: vec![first], dropped: None };
         table.fill(0, extent, catalogue, care, seed, progress)?;
         progress.begin("weighing them under other noises", None);
-        for (i, noisy) in kept.enumerate() {
+        let mut others: Vec<Noisy<'a>> = kept.collect();
+        let first = &table.rows[0];
+        for one in simpler {
+            if first.does_under(&*one.program, one.own(), catalogue, seed)? {
+                others.push(one.fitted(seed)?);
+            }
+        }
+        let regains = match &dropped {
+            Some(one) => {
+                first.does_under(one.program(), one.own(), catalogue, seed)?
+            }
+            None => false,
+        };
+        match regains {
+            true => others.extend(dropped),
+            false => table.dropped = dropped,
+        }
+        for (i, noisy) in others.into_iter().enumerate() {
             let seed = seed.child(100 + i as u64);
             let first = &table.rows[0];
             let row = Row::beside(noisy, first, catalogue, seed)?;
@@ -130,10 +151,36 @@ impl<'a> Table<'a> {
         Ok(Some(known))
     }
 
+    /// Drops noises that say in more parameters what a simpler one says, all
+    /// that may be missing counted, by ln of their probabilities; where the
+    /// row that the model goes on with is then.
+    pub(crate) fn without_idle(&mut self, row: usize, logs: &[f64]) -> usize {
+        let forms: Vec<Form> =
+            self.rows.iter().map(|row| Form::of(&row.noisy.name)).collect();
+        let mut idle = idle(&forms, logs);
+        for (i, (idle, own)) in idle.iter_mut().zip(&self.rows).enumerate() {
+            *idle &= i != row && !own.noisy.is_named();
+        }
+        let mut each = idle.iter();
+        self.rows.retain(|_| !each.next().is_some_and(|idle| *idle));
+        row - idle[..row].iter().filter(|idle| **idle).count()
+    }
+
     /// Whether the named noise is kept.
     pub(crate) fn keeps_named(&self) -> bool {
         self.dropped.is_none()
     }
+}
+
+/// Which noises say what a simpler one says.
+fn idle(forms: &[Form], logs: &[f64]) -> Vec<bool> {
+    let all = || forms.iter().zip(logs);
+    let is_idle = |(form, log): (&Form, &f64)| {
+        all().any(|(other, its)| {
+            other.is_simpler_than(form) && *log < its + MORE
+        })
+    };
+    all().map(is_idle).collect()
 }
 
 fn no_noise() -> Error {
@@ -210,6 +257,26 @@ impl<'a> Row<'a> {
         Ok(Self { noisy, candidates, open, found: None })
     }
 
+    /// Whether the likeliest mechanism is about as likely under another noise
+    /// as anything is here.
+    fn does_under(
+        &self,
+        program: &dyn AnyProgram,
+        own: [&[f64]; 2],
+        catalogue: &[Box<dyn Mechanism>],
+        seed: Seed,
+    ) -> Result<bool> {
+        let found = self.found()?;
+        let logs = self.candidates.iter().enumerate();
+        let best = logs.max_by(|(_, a), (_, b)| a.total_cmp(b));
+        let Some((at, log)) = best else { return Ok(false) };
+        let from = (self.noisy.program(), &found.candidates[at]);
+        let mechanisms = &[catalogue[at].as_ref()][..];
+        let there = Move { from, to: (program, own), mechanisms };
+        let gain = there.gain(seed.child(99))?;
+        Ok(log + gain > self.highest() - NEAR * LN_10)
+    }
+
     /// The most evidence of any, in ln, and of the model alone.
     fn highest(&self) -> f64 {
         let none = self.noisy.none.log_evidence;
@@ -223,5 +290,21 @@ impl<'a> Row<'a> {
     pub(crate) fn found(&self) -> Result<&Attribution> {
         let missing = || Error::inference("a noise without fits");
         self.found.as_ref().ok_or_else(missing)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_noise_that_says_what_a_simpler_one_says_is_idle() {
+        let forms = ["ou + white", "iid", "white + growth", "ou + tails"];
+        let forms = forms.map(Form::of);
+        // Two in ln by growth pay; half of one by a memory, and a tie with
+        // what is not simpler, do not.
+        let found = idle(&forms, &[0.5, 0.0, 2.0, 0.5]);
+        assert_eq!(found, [true, false, false, true]);
+        assert_eq!(idle(&forms[2..], &[2.0, 0.5]), [false, false]);
     }
 }

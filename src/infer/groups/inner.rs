@@ -24,6 +24,10 @@ const INNER: usize = 16;
 /// there, and the effective share at which its mixture is good enough.
 const STARTS: usize = 4;
 const SHARP: f64 = 0.3;
+/// The draws of a round that teaches that mixture, early and late: it is never
+/// weighed by more than a few.
+const LEARNING: usize = 200;
+const JUDGING: usize = 500;
 /// The most steps to where a group is best at given common coordinates.
 const FEW: usize = 5;
 
@@ -81,7 +85,12 @@ impl<'a> Inner<'a> {
             starts: from,
             grids: Vec::new(),
         };
-        let schedule = Schedule { good_share: SHARP, ..laplace.schedule };
+        let schedule = Schedule {
+            good_share: SHARP,
+            learning_draws: LEARNING,
+            judging_draws: JUDGING,
+            ..laplace.schedule
+        };
         let search = LaplaceMixture { space, schedule };
         let mixture = search.frozen(&posterior, seed)?.mixture;
         Ok(Some(Shape { mode, mixture }))

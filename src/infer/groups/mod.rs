@@ -64,7 +64,7 @@ const JOINT: f64 = 0.25;
 /// After how many rounds it is given up, and after how many where no tenth of
 /// that share is in sight.
 const JOINT_ROUNDS: u64 = 6;
-const HOPELESS_ROUNDS: u64 = 3;
+const HOPELESS_ROUNDS: u64 = 2;
 
 /// How the evidence of groups with something in common is found.
 const NESTED: &str = "importance sampling of what is in common, and of each \
