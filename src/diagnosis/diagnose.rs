@@ -164,9 +164,7 @@ impl Subject<'_> {
                 *log = f64::NEG_INFINITY;
             }
         }
-        let row = taken(named, &logs);
-        let logs = self.log_of_noises(table, options);
-        Ok(table.without_idle(row, &logs))
+        Ok(taken(named, &logs))
     }
 
     fn log_of_noises(&self, table: &Table<'_>, options: &Options) -> Vec<f64> {

@@ -29,7 +29,7 @@ const WITH_DRIFT: [&str; 1] = ["matern32 + ou"];
 /// In log10: how far below the best a noise may be that is kept.
 pub(crate) const NEAR: f64 = 2.5;
 /// In ln: by how much a noise must have more evidence than simpler ones.
-pub(super) const MORE: f64 = 1.0;
+const MORE: f64 = 1.0;
 /// The most noises that mechanisms are weighed under; the named one may come
 /// on top.
 const MOST: usize = 3;

@@ -4,12 +4,11 @@ use std::f64::consts::LN_10;
 
 use super::attribute::{Attribution, Care, Known, attribute_beside};
 use super::carried::Move;
-use super::noises::{MORE, NEAR, Noises, Noisy};
+use super::noises::{NEAR, Noises, Noisy};
 use crate::error::{Error, Result};
 use crate::infer::Progress;
 use crate::mechanism::{Extent, Mechanism};
 use crate::model::{AnyProgram, Program};
-use crate::noise::Form;
 use crate::parallel;
 use crate::seed::Seed;
 
@@ -151,36 +150,10 @@ impl<'a> Table<'a> {
         Ok(Some(known))
     }
 
-    /// Drops noises that say in more parameters what a simpler one says, all
-    /// that may be missing counted, by ln of their probabilities; where the
-    /// row that the model goes on with is then.
-    pub(crate) fn without_idle(&mut self, row: usize, logs: &[f64]) -> usize {
-        let forms: Vec<Form> =
-            self.rows.iter().map(|row| Form::of(&row.noisy.name)).collect();
-        let mut idle = idle(&forms, logs);
-        for (i, (idle, own)) in idle.iter_mut().zip(&self.rows).enumerate() {
-            *idle &= i != row && !own.noisy.is_named();
-        }
-        let mut each = idle.iter();
-        self.rows.retain(|_| !each.next().is_some_and(|idle| *idle));
-        row - idle[..row].iter().filter(|idle| **idle).count()
-    }
-
     /// Whether the named noise is kept.
     pub(crate) fn keeps_named(&self) -> bool {
         self.dropped.is_none()
     }
-}
-
-/// Which noises say what a simpler one says.
-fn idle(forms: &[Form], logs: &[f64]) -> Vec<bool> {
-    let all = || forms.iter().zip(logs);
-    let is_idle = |(form, log): (&Form, &f64)| {
-        all().any(|(other, its)| {
-            other.is_simpler_than(form) && *log < its + MORE
-        })
-    };
-    all().map(is_idle).collect()
 }
 
 fn no_noise() -> Error {
@@ -290,21 +263,5 @@ impl<'a> Row<'a> {
     pub(crate) fn found(&self) -> Result<&Attribution> {
         let missing = || Error::inference("a noise without fits");
         self.found.as_ref().ok_or_else(missing)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_noise_that_says_what_a_simpler_one_says_is_idle() {
-        let forms = ["ou + white", "iid", "white + growth", "ou + tails"];
-        let forms = forms.map(Form::of);
-        // Two in ln by growth pay; half of one by a memory, and a tie with
-        // what is not simpler, do not.
-        let found = idle(&forms, &[0.5, 0.0, 2.0, 0.5]);
-        assert_eq!(found, [true, false, false, true]);
-        assert_eq!(idle(&forms[2..], &[2.0, 0.5]), [false, false]);
     }
 }
