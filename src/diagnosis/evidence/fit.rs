@@ -48,7 +48,7 @@ impl Fit {
 #[derive(Debug, Clone)]
 pub(crate) struct Prospect {
     backend: LaplaceMixture,
-    found: Found,
+    searched: Searched,
     log: f64,
     /// How many parameters the mechanisms have.
     added: usize,
@@ -56,7 +56,7 @@ pub(crate) struct Prospect {
 
 /// What a search leaves for an estimate to begin from.
 #[derive(Debug, Clone)]
-enum Found {
+enum Searched {
     /// Of one event, a proposal for all coordinates.
     Proposal(Frozen),
     /// Of several, each of which gets a proposal of its own, the highest peak
@@ -81,7 +81,9 @@ impl Prospect {
         program: &dyn AnyProgram,
         mechanisms: &[&dyn Mechanism],
     ) -> Result<Option<(Vec<f64>, Vec<f64>)>> {
-        let Found::Proposal(frozen) = &self.found else { return Ok(None) };
+        let Searched::Proposal(frozen) = &self.searched else {
+            return Ok(None);
+        };
         let with = With::new(program, mechanisms);
         let posterior = Posterior::new(&with)?;
         let mut highest: Option<Peak> = None;
@@ -104,11 +106,11 @@ impl Prospect {
 
     /// The most, in ln, that it may hold.
     pub(crate) fn most(&self) -> f64 {
-        let unseen = match &self.found {
-            Found::Proposal(frozen) if frozen.good => SETTLED,
-            Found::Proposal(frozen) if frozen.round > FEW_ROUNDS => OPEN,
-            Found::Proposal(_) => UNSEEN,
-            Found::Highest(_) => SEVERAL,
+        let unseen = match &self.searched {
+            Searched::Proposal(frozen) if frozen.good => SETTLED,
+            Searched::Proposal(frozen) if frozen.round > FEW_ROUNDS => OPEN,
+            Searched::Proposal(_) => UNSEEN,
+            Searched::Highest(_) => SEVERAL,
         };
         self.log + unseen
     }
@@ -116,9 +118,9 @@ impl Prospect {
     /// The same with a search of another kind in its estimate; `None` where the
     /// estimate does not search by itself, as that of several events does.
     pub(crate) fn searching(&self, backend: &LaplaceMixture) -> Option<Self> {
-        match self.found {
-            Found::Proposal(_) => None,
-            Found::Highest(_) => {
+        match self.searched {
+            Searched::Proposal(_) => None,
+            Searched::Highest(_) => {
                 let backend = backend.clone();
                 Some(Self { backend, ..self.clone() })
             }
@@ -140,7 +142,7 @@ impl Prospect {
         let posterior = Posterior::new(&with)?;
         let most = self.backend.schedule.rounds;
         for rounds in [FEW_ROUNDS + 2, most] {
-            let Found::Proposal(frozen) = &self.found else { break };
+            let Searched::Proposal(frozen) = &self.searched else { break };
             if frozen.good || !self.may_reach(threshold) {
                 break;
             }
@@ -149,7 +151,7 @@ impl Prospect {
             let frozen = frozen.clone();
             let next = frozen.learned(&posterior, schedule, rounds, seed)?;
             self.log = next.log;
-            self.found = Found::Proposal(next);
+            self.searched = Searched::Proposal(next);
         }
         Ok(self)
     }
@@ -165,8 +167,9 @@ impl Prospect {
         posterior: &Posterior<'_>,
         seed: Seed,
     ) -> Result<Self> {
-        let both = (&self.found, other.found);
-        let (Found::Proposal(first), Found::Proposal(second)) = both else {
+        let both = (&self.searched, other.searched);
+        let (Searched::Proposal(first), Searched::Proposal(second)) = both
+        else {
             return Ok(self);
         };
         if other.log > self.log {
@@ -174,7 +177,7 @@ impl Prospect {
             let both = second.beside(first);
             let both = both.learned(posterior, schedule, FEW_ROUNDS, seed)?;
             self.log = both.log;
-            self.found = Found::Proposal(both);
+            self.searched = Searched::Proposal(both);
         }
         Ok(self)
     }
@@ -193,16 +196,16 @@ impl Prospect {
         let with = With::new(program, mechanisms);
         let posterior = Posterior::new(&with)?;
         let backend = &self.backend;
-        let found = match &self.found {
-            Found::Proposal(frozen) => {
+        let found = match &self.searched {
+            Searched::Proposal(frozen) => {
                 backend.estimate(&posterior, frozen, precision, seed, &Quiet)
             }
-            Found::Highest(_) => apart::estimate(
+            Searched::Highest(_) => apart::estimate(
                 program, mechanisms, &posterior, backend, precision, seed,
             ),
         };
         let mut fit = fit_of(&posterior, found?, with.added())?;
-        if let Found::Highest(Some(highest)) = &self.found {
+        if let Searched::Highest(Some(highest)) = &self.searched {
             fit.best = higher(&posterior, fit.best, highest)?;
         }
         Ok(fit)
@@ -218,7 +221,7 @@ impl Prospect {
         mechanisms: &[&dyn Mechanism],
         seed: Seed,
     ) -> Result<Vec<f64>> {
-        if let Found::Highest(Some(highest)) = &self.found {
+        if let Searched::Highest(Some(highest)) = &self.searched {
             return Ok(highest.clone());
         }
         let fit = self.fit(program, mechanisms, Precision::Rough, seed)?;
@@ -258,14 +261,14 @@ pub(crate) fn prospect(
     if program.events() > 1 {
         let Peaks { log, highest } = backend.outlook(&posterior, seed)?;
         let highest = highest.map(|peak| peak.line.as_slice().to_vec());
-        let found = Found::Highest(highest);
-        return Ok(Prospect { backend, found, log, added });
+        let searched = Searched::Highest(highest);
+        return Ok(Prospect { backend, searched, log, added });
     }
     let frozen = backend.searched(&posterior, seed.child(0))?;
     let (schedule, seed) = (&backend.schedule, seed.child(1));
     let frozen = frozen.learned(&posterior, schedule, FEW_ROUNDS, seed)?;
-    let (log, found) = (frozen.log, Found::Proposal(frozen));
-    Ok(Prospect { backend, found, log, added })
+    let (log, searched) = (frozen.log, Searched::Proposal(frozen));
+    Ok(Prospect { backend, searched, log, added })
 }
 
 /// Fits a program with mechanisms, looking for modes as told.
@@ -427,9 +430,9 @@ mod tests {
     fn two_searches_together_hold_what_either_found() {
         let posterior = Posterior::new(&Hills).unwrap();
         let near = |x: f64, log: f64| {
-            let found = Found::Proposal(proposal_for_hill(x));
+            let searched = Searched::Proposal(proposal_for_hill(x));
             let backend = LaplaceMixture::default();
-            Prospect { backend, found, log, added: 0 }
+            Prospect { backend, searched, log, added: 0 }
         };
         let low = near(-1.0, between(-3.0, 0.0));
         let high = near(1.0, between(0.0, 4.0));
@@ -437,7 +440,9 @@ mod tests {
             a.clone().joined(b.clone(), &posterior, Seed::new(3)).unwrap()
         };
         let at = |one: &Prospect, x: f64| {
-            let Found::Proposal(frozen) = &one.found else { unreachable!() };
+            let Searched::Proposal(frozen) = &one.searched else {
+                unreachable!()
+            };
             frozen.mixture.log_density(&[x, 0.0])
         };
         let both = joined(&low, &high);

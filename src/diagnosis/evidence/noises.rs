@@ -241,19 +241,18 @@ fn kept(mut all: Vec<Weighed<'_>>, seed: Seed) -> Result<Noises<'_>> {
             most.push(name);
         }
     }
-    let first = all.iter().find(|one| most.contains(&one.name));
-    let first = first.map(Weighed::form);
     let mut noises = Noises::default();
     for one in all {
         let is_near = near.contains(&one.name);
         let is_named = one.program.is_named();
-        let is_simpler =
-            first.as_ref().is_some_and(|f| one.form().is_simpler_than(f));
+        let is_simpler = |first: &Noisy<'_>| {
+            one.form().is_simpler_than(&Form::of(&first.name))
+        };
         if most.contains(&one.name) || (is_near && is_named) {
             noises.kept.push(one.fitted(seed)?);
         } else if is_named {
             noises.dropped = Some(one.fitted(seed)?);
-        } else if is_simpler {
+        } else if noises.kept.first().is_some_and(is_simpler) {
             noises.simpler.push(one);
         }
     }

@@ -61,20 +61,19 @@ impl<'a> Table<'a> {
         progress.begin("weighing them under other noises", None);
         let mut others: Vec<Noisy<'a>> = kept.collect();
         let first = &table.rows[0];
-        for one in simpler {
-            if first.does_under(&*one.program, one.own(), catalogue, seed)? {
+        let does = |program: &dyn AnyProgram, own: [&[f64]; 2]| {
+            first.does_under(program, own, catalogue, seed.child(99))
+        };
+        let again =
+            parallel::try_map(&simpler, |one| does(&*one.program, one.own()))?;
+        for (one, does) in simpler.into_iter().zip(again) {
+            if does {
                 others.push(one.fitted(seed)?);
             }
         }
-        let regains = match &dropped {
-            Some(one) => {
-                first.does_under(one.program(), one.own(), catalogue, seed)?
-            }
-            None => false,
-        };
-        match regains {
-            true => others.extend(dropped),
-            false => table.dropped = dropped,
+        match dropped {
+            Some(one) if does(one.program(), one.own())? => others.push(one),
+            dropped => table.dropped = dropped,
         }
         for (i, noisy) in others.into_iter().enumerate() {
             let seed = seed.child(100 + i as u64);
@@ -246,7 +245,7 @@ impl<'a> Row<'a> {
         let from = (self.noisy.program(), &found.candidates[at]);
         let mechanisms = &[catalogue[at].as_ref()][..];
         let there = Move { from, to: (program, own), mechanisms };
-        let gain = there.gain(seed.child(99))?;
+        let gain = there.gain(seed)?;
         Ok(log + gain > self.highest() - NEAR * LN_10)
     }
 

@@ -17,17 +17,18 @@ use crate::model::{Point, Posterior, Slice};
 use crate::seed::{Rng, Seed};
 
 /// How many draws estimate what a group holds at given common coordinates. The
-/// relative variance of one is 0.7 to 1.4 in the median, that of what is drawn
-/// in common 1.5 and more: of more draws within, fewer could be made of that.
+/// relative variance of one is 0.7 to 1.4 in the median, that of a draw of what
+/// is in common 1.5 and more: more of them would cost more than they sharpen
+/// (docs/record/speed-tried.md).
 const INNER: usize = 16;
 /// How many climbs from draws of the prior look for other modes of a group
 /// there, and the effective share at which its mixture is good enough.
 const STARTS: usize = 4;
 const SHARP: f64 = 0.3;
-/// The draws of a round that teaches that mixture, early and late: it is never
-/// weighed by more than a few.
-const LEARNING: usize = 200;
-const JUDGING: usize = 500;
+/// The draws of early and of late rounds that teach that mixture: a third and a
+/// quarter of the usual, since no more than a few draws at a time are made of it.
+const EARLY: usize = 200;
+const LATE: usize = 500;
 /// The most steps to where a group is best at given common coordinates.
 const FEW: usize = 5;
 
@@ -87,8 +88,8 @@ impl<'a> Inner<'a> {
         };
         let schedule = Schedule {
             good_share: SHARP,
-            learning_draws: LEARNING,
-            judging_draws: JUDGING,
+            learning_draws: EARLY,
+            judging_draws: LATE,
             ..laplace.schedule
         };
         let search = LaplaceMixture { space, schedule };
