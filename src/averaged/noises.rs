@@ -73,6 +73,11 @@ impl<'n> Kept<'n> {
             _ => self.noisy.none.log_evidence,
         }
     }
+
+    /// ln of its probability, up to a constant.
+    fn worth(&self) -> f64 {
+        self.log() + self.noisy.beforehand()
+    }
 }
 
 /// Under each noise that is kept and may matter, most probable first.
@@ -88,20 +93,20 @@ pub(super) fn under_each<'a>(
 ) -> Result<Vec<Under<'a>>> {
     let kept = noises.kept.iter().map(|noisy| Kept::of(noisy, named));
     let mut kept = kept.collect::<Result<Vec<_>>>()?;
-    let most = kept.iter().map(Kept::log).fold(f64::NEG_INFINITY, f64::max);
+    let most = kept.iter().map(Kept::worth).fold(f64::NEG_INFINITY, f64::max);
     for one in &mut kept {
-        if one.log() > most + LEAST.ln() {
+        if one.worth() > most + LEAST.ln() {
             let program = one.other.as_ref().unwrap_or(named);
             let found = calibrate(program, backend, seed, progress)?;
             one.found = Some(found);
         }
     }
-    kept.sort_by(|a, b| b.log().total_cmp(&a.log()));
+    kept.sort_by(|a, b| b.worth().total_cmp(&a.worth()));
     let all = judged(&kept, noises.dropped.as_ref());
     let calibrated = kept.iter().filter(|one| one.found.is_some());
-    let total = log_sum_exp(calibrated.map(Kept::log));
+    let total = log_sum_exp(calibrated.map(Kept::worth));
     let under = kept.into_iter().filter_map(|one| {
-        let probability = (one.log() - total).exp();
+        let probability = (one.worth() - total).exp();
         Some(Under {
             named,
             other: one.other,
@@ -114,17 +119,16 @@ pub(super) fn under_each<'a>(
     Ok(under.collect())
 }
 
-/// What the evidence says of the noises that are kept, each as probable
-/// beforehand.
+/// What the evidence says of the noises that are kept.
 fn judged(kept: &[Kept<'_>], dropped: Option<&Noisy<'_>>) -> Vec<NoiseReport> {
-    let total = log_sum_exp(kept.iter().map(Kept::log));
+    let total = log_sum_exp(kept.iter().map(Kept::worth));
     let named = kept.iter().find(|one| one.noisy.is_named()).map(Kept::log);
     let named = named.or(dropped.map(|noisy| noisy.none.log_evidence));
     let judged = |one: &Kept<'_>| {
         let (name, log) = (&one.noisy.name, one.log());
         NoiseReport {
             name: name.clone(),
-            probability: (log - total).exp(),
+            probability: (one.worth() - total).exp(),
             log10_bayes_factor: (log - named.unwrap_or(f64::NAN)) / LN_10,
             parameters: Vec::new(),
         }

@@ -351,9 +351,10 @@ pub struct JudgedNoise {
     pub has_tails: bool,
     /// Whether its size changes along the recording.
     pub grows: bool,
-    /// Its probability among those that are kept.
+    /// Its probability among those that are kept; each parameter makes it e
+    /// times less probable beforehand.
     pub probability: f64,
-    /// Against the noise that the model names.
+    /// Against the noise that the model names, without those odds.
     pub log10_bayes_factor: f64,
     /// Its parameters.
     pub parameters: Vec<ParameterSummary>,

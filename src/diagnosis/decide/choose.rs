@@ -61,9 +61,8 @@ impl Choice<'_> {
             return Ok(Some(Chosen::new(vec![first], fit)));
         }
         let stepwise = Stepwise {
-            program: self.noisy.program(),
+            noisy: self.noisy,
             all: self.all,
-            open: &self.noisy.open.own,
             found: self.found,
             beforehand: &self.beforehand,
             candidates,

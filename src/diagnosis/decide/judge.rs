@@ -17,9 +17,17 @@ fn log_mean(logs: &[f64]) -> f64 {
     log_sum_exp(logs.iter().copied()) - (logs.len() as f64).ln()
 }
 
+/// The same over noises, each as likely as it is beforehand.
+fn over_noises(rows: &[Seen<'_>], log: impl Fn(&Seen<'_>) -> f64) -> f64 {
+    let all = rows.iter().map(|row| row.beforehand + log(row));
+    log_sum_exp(all) - log_sum_exp(rows.iter().map(|row| row.beforehand))
+}
+
 /// What the evidence says under one noise.
 #[derive(Debug, Clone)]
 pub(crate) struct Seen<'a> {
+    /// ln of the probability of the noise beforehand, up to a constant.
+    beforehand: f64,
     none: &'a Fit,
     /// ln of the evidence of each mechanism.
     candidates: Vec<f64>,
@@ -32,6 +40,7 @@ pub(crate) struct Seen<'a> {
 impl<'a> Seen<'a> {
     pub(crate) fn of(row: &'a Row<'_>) -> Self {
         Self {
+            beforehand: row.noisy.beforehand(),
             none: &row.noisy.none,
             candidates: row.candidates.clone(),
             open: Some(row.open),
@@ -42,6 +51,7 @@ impl<'a> Seen<'a> {
     fn alone(found: &'a Attribution) -> Self {
         let logs = found.candidates.iter().map(|fit| fit.log_evidence);
         Self {
+            beforehand: 0.0,
             none: &found.none,
             candidates: logs.collect(),
             open: (!found.forces.is_empty()).then(|| found.open_log()),
@@ -76,7 +86,7 @@ pub fn judge(
     judge_all(&[Seen::alone(found)], catalogue, odds)
 }
 
-/// The same averaged over noises that are even beforehand.
+/// The same averaged over noises.
 pub(crate) fn judge_all(
     rows: &[Seen<'_>],
     catalogue: &[Box<dyn Mechanism>],
@@ -97,7 +107,7 @@ pub(crate) fn judge_all(
 }
 
 /// ln of the probability of each noise and the recordings, up to a constant:
-/// summed over what may be missing, noises being even beforehand.
+/// summed over what may be missing.
 pub(crate) fn log_of_noises(
     rows: &[Seen<'_>],
     catalogue: &[Box<dyn Mechanism>],
@@ -108,19 +118,18 @@ pub(crate) fn log_of_noises(
         let names = logs.iter().map(|(name, _)| *name);
         let beforehand = Beforehand::among(names, odds);
         let each = logs.iter().map(|(name, log)| beforehand.log(name) + log);
-        log_sum_exp(each)
+        row.beforehand + log_sum_exp(each)
     };
     rows.iter().map(of).collect()
 }
 
 fn none(rows: &[Seen<'_>]) -> Judged {
     let fits: Vec<&Fit> = rows.iter().map(|row| row.none).collect();
-    let logs: Vec<f64> = fits.iter().map(|fit| fit.log_evidence).collect();
     Judged {
         name: NONE.into(),
         noun: Noun::one("the model as it was"),
         kind: Hypothesis::Baseline,
-        log_evidence: log_mean(&logs),
+        log_evidence: over_noises(rows, |row| row.none.log_evidence),
         se: most(&fits).map_or(f64::NAN, |fit| fit.se),
         says: "Nothing is missing: the model as it is.".into(),
         ..Judged::default()
@@ -186,21 +195,18 @@ fn variants(
 ) -> Vec<Variant> {
     let all = catalogue.iter().enumerate();
     let own = all.filter(|(_, mechanism)| mechanism.name() == name);
-    own.map(|(i, mechanism)| {
-        let logs: Vec<f64> =
-            rows.iter().map(|row| row.candidates[i]).collect();
-        Variant {
-            label: mechanism.label(),
-            coordinate: mechanism.coordinate(),
-            log_evidence: log_mean(&logs),
-        }
+    own.map(|(i, mechanism)| Variant {
+        label: mechanism.label(),
+        coordinate: mechanism.coordinate(),
+        log_evidence: over_noises(rows, |row| row.candidates[i]),
     })
     .collect()
 }
 
 fn unknown(rows: &[Seen<'_>]) -> Option<Judged> {
-    let logs: Vec<f64> =
-        rows.iter().map(|row| row.open).collect::<Option<_>>()?;
+    if rows.iter().any(|row| row.open.is_none()) {
+        return None;
+    }
     let found = rows.iter().filter_map(|row| row.found);
     let forces = found.flat_map(|found| {
         found.forces.iter().map(|force| (force, found.none.se))
@@ -213,7 +219,9 @@ fn unknown(rows: &[Seen<'_>]) -> Option<Judged> {
         name: UNKNOWN.into(),
         noun: Noun::one(NOUN),
         kind: Hypothesis::Unknown,
-        log_evidence: log_mean(&logs),
+        log_evidence: over_noises(rows, |row| {
+            row.open.unwrap_or(f64::NEG_INFINITY)
+        }),
         se: best.map_or(f64::NAN, |(force, none)| force.se.hypot(none)),
         says: SAYS.into(),
         coordinate: best.map(|(force, _)| force.axis),

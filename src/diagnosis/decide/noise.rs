@@ -33,24 +33,26 @@ pub(crate) fn judged_noises(
 ) -> Result<Vec<JudgedNoise>> {
     let total = log_sum_exp(logs.iter().copied());
     let named = table.as_it_was()?;
+    let evidence =
+        |place: usize| logs[place] - table.rows[place].noisy.beforehand();
     let of_named = match table.named() {
-        Some(place) => logs[place],
+        Some(place) => evidence(place),
         // It was dropped: about as far below the best as it was then.
         None => {
             let best = taken(None, logs);
             let above = table.rows[best].noisy.either_way();
-            logs[best] - (above - named.either_way())
+            evidence(best) - (above - named.either_way())
         }
     };
     let mut all = Vec::new();
-    for (row, log) in table.rows.iter().zip(logs) {
+    for (place, row) in table.rows.iter().enumerate() {
         let form = Form::of(&row.noisy.name);
-        let gain = log - of_named;
+        let gain = evidence(place) - of_named;
         all.push(JudgedNoise {
             name: row.noisy.name.clone(),
             has_tails: form.has_tails,
             grows: form.grows,
-            probability: (log - total).exp(),
+            probability: (logs[place] - total).exp(),
             log10_bayes_factor: gain / LN_10,
             parameters: parameters(row),
         });

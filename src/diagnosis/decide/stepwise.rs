@@ -21,7 +21,6 @@ use crate::draws::log_sum_exp;
 use crate::error::Result;
 use crate::infer::Precision;
 use crate::mechanism::Mechanism;
-use crate::model::AnyProgram;
 use crate::parallel;
 use crate::seed::Seed;
 
@@ -35,11 +34,9 @@ const AT_ONCE: usize = 4;
 
 /// A search for the terms that are worth most together.
 pub(crate) struct Stepwise<'a> {
-    pub(crate) program: &'a dyn AnyProgram,
+    /// The model under the noise that it goes on with, without mechanisms.
+    pub(crate) noisy: &'a Noisy<'a>,
     pub(crate) all: &'a [Box<dyn Mechanism>],
-    /// Where the model's own parameters are likely beside a force of free
-    /// form, on the real line.
-    pub(crate) open: &'a [f64],
     /// The fit of each of them.
     pub(crate) found: &'a Attribution,
     pub(crate) beforehand: &'a Beforehand<'a>,
@@ -117,7 +114,7 @@ impl<'a> Stepwise<'a> {
         self.count_noises(&mut best, &mut others)?;
         let Tried { mut chosen, found } = best;
         if let Some(found) = found {
-            chosen.fit = found.fit(self.program, Precision::Sharp)?;
+            chosen.fit = found.fit(self.noisy.program(), Precision::Sharp)?;
         }
         chosen.rivals = self.rivals(&chosen, others);
         Ok(chosen)
@@ -166,10 +163,12 @@ impl<'a> Stepwise<'a> {
     /// about.
     fn tried(&self, look: Look<'a>, hurdle: f64) -> Result<Option<Tried<'a>>> {
         let Look { which, price, terms } = look;
-        let Some(found) = terms.pursued(self.program, hurdle + price)? else {
+        let Some(found) =
+            terms.pursued(self.noisy.program(), hurdle + price)?
+        else {
             return Ok(None);
         };
-        let fit = found.fit(self.program, Precision::Fair)?;
+        let fit = found.fit(self.noisy.program(), Precision::Fair)?;
         let chosen = Chosen::new(which, fit);
         let tried = Tried { chosen, found: Some(found) };
         Ok(Some(tried).filter(|one| one.chosen.leaves_friction(self.all)))
@@ -189,8 +188,8 @@ impl<'a> Stepwise<'a> {
     fn pair(&self, which: [usize; 2], seed: Seed) -> Result<Combination<'a>> {
         let mechanisms = which.map(|i| self.all[i].as_ref());
         let fits = which.map(|i| &self.found.candidates[i]);
-        let open = Some(self.open);
-        Combination::pair(self.program, mechanisms, fits, open, seed)
+        let open = Some(&self.noisy.open.own[..]);
+        Combination::pair(self.noisy.program(), mechanisms, fits, open, seed)
     }
 
     /// One term more beside some of the chosen.
@@ -215,11 +214,11 @@ impl<'a> Stepwise<'a> {
             mechanisms: &mechanisms,
             added: &parameters,
             own: chosen.fit.own(),
-            open: self.open,
+            open: &self.noisy.open.own,
         };
         let added = which[which.len() - 1];
         let added = (self.all[added].as_ref(), &self.found.candidates[added]);
-        Combination::extended(self.program, &known, added, seed)
+        Combination::extended(self.noisy.program(), &known, added, seed)
     }
 
     /// Exchanges the best for what is worth more where all noises that are
@@ -252,12 +251,13 @@ impl<'a> Stepwise<'a> {
     /// By how much more, in ln, the evidence of terms is, summed over noises.
     fn gain(&self, chosen: &Chosen) -> Result<f64> {
         let mechanisms = chosen.mechanisms(self.all);
-        let from = (self.program, &chosen.fit);
+        let from = (self.noisy.program(), &chosen.fit);
         let mut gains = vec![0.0];
         for noisy in self.elsewhere {
             let to = (noisy.program(), noisy.own());
             let there = Move { from, to, mechanisms: &mechanisms };
-            gains.push(there.gain(self.seed.child(1))?);
+            let odds = noisy.beforehand() - self.noisy.beforehand();
+            gains.push(there.gain(self.seed.child(1))? + odds);
         }
         Ok(log_sum_exp(gains.into_iter()))
     }

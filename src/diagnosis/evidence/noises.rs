@@ -9,7 +9,7 @@
 use std::f64::consts::LN_10;
 
 use super::fit::{Fit, fit};
-use super::survey::{Held, Survey, Weighed, best, either_way};
+use super::survey::{Held, Survey, Weighed, beforehand, best, either_way};
 use crate::diagnosis::locate::Outlook;
 use crate::error::Result;
 use crate::infer::LaplaceMixture;
@@ -60,6 +60,11 @@ impl Noisy<'_> {
     /// Whether it is the one that the model names.
     pub(crate) fn is_named(&self) -> bool {
         self.program.is_named()
+    }
+
+    /// ln of its probability before the recording is seen, up to a constant.
+    pub(crate) fn beforehand(&self) -> f64 {
+        beforehand(&self.name)
     }
 
     /// ln of its evidence with physics absent or of free form, both alike.

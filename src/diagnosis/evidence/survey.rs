@@ -27,6 +27,9 @@ const HIGHER: f64 = 1.0;
 /// From how many draws of the prior climbs start before it is known whether a
 /// noise is kept (docs/record/thresholds.md).
 const STARTS: usize = 16;
+/// In ln: by how much less likely a noise is beforehand for each parameter that
+/// it has.
+const PER_PARAMETER: f64 = 1.0;
 /// At how many draws of its prior what a noise has on top of a simpler one
 /// begins.
 const ON_TOP: usize = 3;
@@ -115,13 +118,24 @@ impl<'a> Weighed<'a> {
     /// far.
     pub(super) fn worth(&self) -> f64 {
         let named = if self.program.is_named() { LN_10 } else { 0.0 };
-        either_way(self.logs()) + named
+        either_way(self.logs()) + named + beforehand(&self.name)
     }
 }
 
 /// ln of an evidence in either of two ways.
 pub(super) fn either_way(logs: [f64; 2]) -> f64 {
     log_sum_exp(logs.into_iter())
+}
+
+/// ln of the probability of a noise before a recording is seen, up to a
+/// constant: a noise that has a part more makes all the errors that it makes
+/// without, and a recording that tells the two hardly apart speaks for the
+/// simpler one.
+pub(super) fn beforehand(name: &str) -> f64 {
+    // Several events may name a noise each.
+    let each = name.split(" | ").filter_map(|name| noise::parse(name).ok());
+    let parameters = each.map(|noise| noise.parameters().len()).max();
+    -PER_PARAMETER * parameters.unwrap_or(0) as f64
 }
 
 /// Weighs a program under many noises.
@@ -283,4 +297,23 @@ pub(super) fn best<'w, 'a: 'w>(
     noises: impl Iterator<Item = &'w Weighed<'a>>,
 ) -> Option<&'w Weighed<'a>> {
     noises.max_by(|a, b| a.logs()[way].total_cmp(&b.logs()[way]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_noise_costs_beforehand_what_it_has_besides() {
+        let further = |name| beforehand("iid") - beforehand(name);
+        for (name, parameters) in [
+            ("white", 0.0),
+            ("ar(2)", 2.0),
+            ("matern32 + white", 2.0),
+            ("matern32 + ou + tails + growth", 5.0),
+            ("iid | ou", 1.0),
+        ] {
+            assert_eq!(further(name), parameters * PER_PARAMETER, "{name}");
+        }
+    }
 }
