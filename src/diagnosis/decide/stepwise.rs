@@ -15,7 +15,9 @@ use crate::diagnosis::decide::chosen::Chosen;
 use crate::diagnosis::decide::odds::Beforehand;
 use crate::diagnosis::evidence::attribute::Attribution;
 use crate::diagnosis::evidence::carried::Move;
-use crate::diagnosis::evidence::combination::{Combination, Known, Pursued};
+use crate::diagnosis::evidence::combination::{
+    Combination, Known, Pursued, Sought,
+};
 use crate::diagnosis::evidence::noises::{NEAR, Noisy};
 use crate::draws::log_sum_exp;
 use crate::error::Result;
@@ -95,18 +97,17 @@ impl<'a> Stepwise<'a> {
     /// # Errors
     /// A model that fails.
     pub(crate) fn from(&self, first: usize) -> Result<Chosen> {
-        let fit = self.found.candidates[first].clone();
-        let single = Chosen::new(vec![first], fit);
-        let mut best = Tried { chosen: single, found: None };
+        let first = self.single(first);
+        let mut best = Tried { chosen: first.clone(), found: None };
         let mut tried = BTreeSet::new();
         let mut others: Vec<Tried<'_>> = Vec::new();
         loop {
             let chosen = &best.chosen;
-            let mut steps = self.steps(chosen);
-            steps.retain(|step| {
-                tried.insert(sorted(step.terms(&chosen.which)))
-            });
-            others.extend(self.fits(chosen, &steps)?);
+            let steps = self.untried(chosen, &mut tried);
+            others.extend(self.fits(chosen, &steps, chosen)?);
+            if self.better(&others, chosen).is_none() {
+                others.extend(self.overlooked(&first, chosen, &mut tried)?);
+            }
             let Some(next) = self.better(&others, chosen) else { break };
             let next = others.swap_remove(next);
             others.push(std::mem::replace(&mut best, next));
@@ -120,6 +121,55 @@ impl<'a> Stepwise<'a> {
         Ok(chosen)
     }
 
+    /// A term alone.
+    fn single(&self, term: usize) -> Chosen {
+        Chosen::new(vec![term], self.found.candidates[term].clone())
+    }
+
+    /// The fits of pairs that are not met from the first term, each with a
+    /// term that alone is worth nearly as much: which of these comes first
+    /// must not decide what comes out. Only of those that may be worth more
+    /// than the best, by what their best known places say.
+    fn overlooked(
+        &self,
+        first: &Chosen,
+        best: &Chosen,
+        tried: &mut BTreeSet<Vec<usize>>,
+    ) -> Result<Vec<Tried<'a>>> {
+        let least = self.worth_of(first) - RISE * LN_10;
+        let mut found = Vec::new();
+        for &term in &self.candidates {
+            let single = self.single(term);
+            if self.worth_of(&single) < least {
+                continue;
+            }
+            let steps = self.untried(&single, tried);
+            let most = |step: &Step| -> Result<f64> {
+                let terms = self.sought(&single, step)?;
+                let price = self.price(&step.terms(&single.which));
+                Ok(terms.most(self.noisy.program())? - price)
+            };
+            let most = parallel::try_map(&steps, most)?;
+            let worth = self.worth_of(best);
+            let steps = steps.into_iter().zip(most);
+            let steps = steps.filter(|(_, most)| *most > worth);
+            let steps: Vec<Step> = steps.map(|(step, _)| step).collect();
+            found.extend(self.fits(&single, &steps, best)?);
+        }
+        Ok(found)
+    }
+
+    /// All that differs from some terms by one and was not tried before.
+    fn untried(
+        &self,
+        terms: &Chosen,
+        tried: &mut BTreeSet<Vec<usize>>,
+    ) -> Vec<Step> {
+        let mut steps = self.steps(terms);
+        steps.retain(|step| tried.insert(sorted(step.terms(&terms.which))));
+        steps
+    }
+
     /// All sets that differ from the chosen by one term.
     fn steps(&self, chosen: &Chosen) -> Vec<Step> {
         let names: Vec<&str> = self.all.iter().map(|m| m.name()).collect();
@@ -127,17 +177,22 @@ impl<'a> Stepwise<'a> {
     }
 
     /// The fits that steps lead to, where these may be worth more than the
-    /// chosen and than each other, or nearly so: all are looked at, those that
+    /// best and than each other, or nearly so: all are looked at, those that
     /// promise most are fitted first.
-    fn fits(&self, chosen: &Chosen, steps: &[Step]) -> Result<Vec<Tried<'a>>> {
+    fn fits(
+        &self,
+        chosen: &Chosen,
+        steps: &[Step],
+        best: &Chosen,
+    ) -> Result<Vec<Tried<'a>>> {
         let look = |step| self.look(chosen, step);
         let mut left: Vec<Look<'_>> = parallel::try_map(steps, look)?;
         left.sort_by(|a, b| b.promise().total_cmp(&a.promise()));
-        let mut least = self.worth_of(chosen);
+        let mut least = self.worth_of(best);
         let near = RISE * LN_10;
         let mut found: Vec<Tried<'a>> = Vec::new();
         loop {
-            let terms = chosen.which.len();
+            let terms = best.which.len();
             left.retain(|look| {
                 let alike = look.which.len() == terms;
                 look.most() > if alike { least - near } else { least }
@@ -176,20 +231,27 @@ impl<'a> Stepwise<'a> {
 
     fn look(&self, chosen: &Chosen, step: &Step) -> Result<Look<'a>> {
         let which = step.terms(&chosen.which);
-        let number = which.iter().fold(0, |n, &i| n * 1000 + i as u64 + 1);
-        let seed = self.seed.child(1000 + number);
-        let terms = match &which[..] {
-            &[a, b] => self.pair([a, b], seed)?,
-            _ => self.extended(chosen, step, &which, seed)?,
-        };
+        let terms = self.sought(chosen, step)?;
+        let terms = terms.looked(self.noisy.program())?;
         Ok(Look { price: self.price(&which), which, terms })
     }
 
-    fn pair(&self, which: [usize; 2], seed: Seed) -> Result<Combination<'a>> {
+    /// What a step leads to, with where it is to be looked for.
+    fn sought(&self, chosen: &Chosen, step: &Step) -> Result<Sought<'a>> {
+        let which = step.terms(&chosen.which);
+        let number = which.iter().fold(0, |n, &i| n * 1000 + i as u64 + 1);
+        let seed = self.seed.child(1000 + number);
+        match &which[..] {
+            &[a, b] => self.pair([a, b], seed),
+            _ => self.extended(chosen, step, &which, seed),
+        }
+    }
+
+    fn pair(&self, which: [usize; 2], seed: Seed) -> Result<Sought<'a>> {
         let mechanisms = which.map(|i| self.all[i].as_ref());
         let fits = which.map(|i| &self.found.candidates[i]);
         let open = Some(&self.noisy.open.own[..]);
-        Combination::pair(self.noisy.program(), mechanisms, fits, open, seed)
+        Sought::pair(self.noisy.program(), mechanisms, fits, open, seed)
     }
 
     /// One term more beside some of the chosen.
@@ -199,7 +261,7 @@ impl<'a> Stepwise<'a> {
         step: &Step,
         which: &[usize],
         seed: Seed,
-    ) -> Result<Combination<'a>> {
+    ) -> Result<Sought<'a>> {
         let columns = chosen.columns(self.all);
         let kept: Vec<_> =
             step.kept.iter().map(|&k| columns[k].clone()).collect();
@@ -218,7 +280,7 @@ impl<'a> Stepwise<'a> {
         };
         let added = which[which.len() - 1];
         let added = (self.all[added].as_ref(), &self.found.candidates[added]);
-        Combination::extended(self.noisy.program(), &known, added, seed)
+        Sought::extended(self.noisy.program(), &known, added, seed)
     }
 
     /// Exchanges the best for what is worth more where all noises that are

@@ -238,6 +238,11 @@ const SETTLED: f64 = 1.0;
 /// together 53 held up to 8 more than their peaks said, two 18 and 19 more.
 const SEVERAL: f64 = 10.0;
 
+/// How much more, in ln, than its peaks say a program may hold.
+pub(super) fn unseen(program: &dyn AnyProgram) -> f64 {
+    if program.events() > 1 { SEVERAL } else { UNSEEN }
+}
+
 /// From the middles of how many components a peak is sought: a climb from one
 /// may end where the density bends.
 const MIDDLES: usize = 5;

@@ -29,8 +29,10 @@ const SHARP: f64 = 0.3;
 /// quarter of the usual, since no more than a few draws at a time are made of it.
 const EARLY: usize = 200;
 const LATE: usize = 500;
-/// The most steps to where a group is best at given common coordinates.
-const FEW: usize = 5;
+/// The most steps to where a group is best at given common coordinates, from
+/// where a region's normal approximation has it: five cost 7 % more CPU, with the
+/// same evidences (docs/record/speed-tried.md).
+const FEW: usize = 2;
 
 /// A group, its coordinates parted into common and own ones.
 pub(super) struct Inner<'a> {
