@@ -413,7 +413,8 @@ fn a_noise_that_is_inferred_is_averaged_over() {
     converged(&json);
     let noises = json["noise"].as_array().unwrap();
     assert!(noises.len() > 1, "{noises:?}");
-    // Bayes' rule, from the evidence of each by itself.
+    // Bayes' rule, from the evidence of each by itself; each parameter costs e
+    // beforehand, and all have the same but for those of the noise.
     let mut told = Vec::new();
     for noise in noises {
         let name = noise["name"].as_str().unwrap();
@@ -421,7 +422,8 @@ fn a_noise_that_is_inferred_is_averaged_over() {
         let alone = run(&[&["--noise", name][..], &backend].concat());
         let of = |json: &Value, key: &str| json[key].as_f64().unwrap();
         let mu = &alone["parameters"]["mu"];
-        let log = of(&alone["log_evidence"], "value");
+        let parameters = alone["parameters"].as_object().unwrap().len();
+        let log = of(&alone["log_evidence"], "value") - parameters as f64;
         told.push((of(noise, "probability"), log, of(mu, "mean")));
     }
     let top = told.iter().map(|t| t.1).fold(f64::NEG_INFINITY, f64::max);
