@@ -71,6 +71,14 @@ struct Tried<'a> {
     found: Option<Pursued<'a>>,
 }
 
+/// Terms before any look at them.
+struct Untried<'a> {
+    which: Vec<usize>,
+    /// What they cost, in ln.
+    price: f64,
+    terms: Sought<'a>,
+}
+
 /// Terms after a quick look at them.
 struct Look<'a> {
     which: Vec<usize>,
@@ -97,16 +105,16 @@ impl<'a> Stepwise<'a> {
     /// # Errors
     /// A model that fails.
     pub(crate) fn from(&self, first: usize) -> Result<Chosen> {
-        let first = self.single(first);
-        let mut best = Tried { chosen: first.clone(), found: None };
+        let mut best = Tried { chosen: self.single(first), found: None };
+        let near = self.worth_of(&best.chosen) - RISE * LN_10;
         let mut tried = BTreeSet::new();
         let mut others: Vec<Tried<'_>> = Vec::new();
         loop {
             let chosen = &best.chosen;
-            let steps = self.untried(chosen, &mut tried);
-            others.extend(self.fits(chosen, &steps, chosen)?);
+            let untried = self.untried(chosen, &mut tried)?;
+            others.extend(self.fits(untried, chosen)?);
             if self.better(&others, chosen).is_none() {
-                others.extend(self.overlooked(&first, chosen, &mut tried)?);
+                others.extend(self.overlooked(near, chosen, &mut tried)?);
             }
             let Some(next) = self.better(&others, chosen) else { break };
             let next = others.swap_remove(next);
@@ -127,34 +135,30 @@ impl<'a> Stepwise<'a> {
     }
 
     /// The fits of pairs that are not met from the first term, each with a
-    /// term that alone is worth nearly as much: which of these comes first
+    /// term that alone is worth as much as `near`: which of these comes first
     /// must not decide what comes out. Only of those that may be worth more
     /// than the best, by what their best known places say.
     fn overlooked(
         &self,
-        first: &Chosen,
+        near: f64,
         best: &Chosen,
         tried: &mut BTreeSet<Vec<usize>>,
     ) -> Result<Vec<Tried<'a>>> {
-        let least = self.worth_of(first) - RISE * LN_10;
+        let worth = self.worth_of(best);
         let mut found = Vec::new();
         for &term in &self.candidates {
-            let single = self.single(term);
-            if self.worth_of(&single) < least {
+            let log = self.found.candidates[term].log_evidence;
+            if log - self.price(&[term]) < near {
                 continue;
             }
-            let steps = self.untried(&single, tried);
-            let most = |step: &Step| -> Result<f64> {
-                let terms = self.sought(&single, step)?;
-                let price = self.price(&step.terms(&single.which));
-                Ok(terms.most(self.noisy.program())? - price)
-            };
-            let most = parallel::try_map(&steps, most)?;
-            let worth = self.worth_of(best);
-            let steps = steps.into_iter().zip(most);
-            let steps = steps.filter(|(_, most)| *most > worth);
-            let steps: Vec<Step> = steps.map(|(step, _)| step).collect();
-            found.extend(self.fits(&single, &steps, best)?);
+            let pairs = self.untried(&self.single(term), tried)?;
+            let most = parallel::try_map(&pairs, |pair| {
+                Ok(pair.terms.most(self.noisy.program())? - pair.price)
+            })?;
+            let pairs = pairs.into_iter().zip(most);
+            let pairs = pairs.filter(|(_, most)| *most > worth);
+            let pairs = pairs.map(|(pair, _)| pair).collect();
+            found.extend(self.fits(pairs, best)?);
         }
         Ok(found)
     }
@@ -164,10 +168,10 @@ impl<'a> Stepwise<'a> {
         &self,
         terms: &Chosen,
         tried: &mut BTreeSet<Vec<usize>>,
-    ) -> Vec<Step> {
+    ) -> Result<Vec<Untried<'a>>> {
         let mut steps = self.steps(terms);
         steps.retain(|step| tried.insert(sorted(step.terms(&terms.which))));
-        steps
+        parallel::try_map(&steps, |step| self.sought(terms, step))
     }
 
     /// All sets that differ from the chosen by one term.
@@ -176,17 +180,16 @@ impl<'a> Stepwise<'a> {
         steps(&chosen.which, &self.candidates, &names)
     }
 
-    /// The fits that steps lead to, where these may be worth more than the
-    /// best and than each other, or nearly so: all are looked at, those that
-    /// promise most are fitted first.
+    /// The fits of terms, where these may be worth more than the best and than
+    /// each other, or nearly so: all are looked at, those that promise most are
+    /// fitted first.
     fn fits(
         &self,
-        chosen: &Chosen,
-        steps: &[Step],
+        untried: Vec<Untried<'a>>,
         best: &Chosen,
     ) -> Result<Vec<Tried<'a>>> {
-        let look = |step| self.look(chosen, step);
-        let mut left: Vec<Look<'_>> = parallel::try_map(steps, look)?;
+        let look = |one| self.look(one);
+        let mut left: Vec<Look<'_>> = parallel::try_map(untried, look)?;
         left.sort_by(|a, b| b.promise().total_cmp(&a.promise()));
         let mut least = self.worth_of(best);
         let near = RISE * LN_10;
@@ -229,22 +232,22 @@ impl<'a> Stepwise<'a> {
         Ok(Some(tried).filter(|one| one.chosen.leaves_friction(self.all)))
     }
 
-    fn look(&self, chosen: &Chosen, step: &Step) -> Result<Look<'a>> {
-        let which = step.terms(&chosen.which);
-        let terms = self.sought(chosen, step)?;
+    fn look(&self, untried: Untried<'a>) -> Result<Look<'a>> {
+        let Untried { which, price, terms } = untried;
         let terms = terms.looked(self.noisy.program())?;
-        Ok(Look { price: self.price(&which), which, terms })
+        Ok(Look { which, price, terms })
     }
 
     /// What a step leads to, with where it is to be looked for.
-    fn sought(&self, chosen: &Chosen, step: &Step) -> Result<Sought<'a>> {
+    fn sought(&self, chosen: &Chosen, step: &Step) -> Result<Untried<'a>> {
         let which = step.terms(&chosen.which);
         let number = which.iter().fold(0, |n, &i| n * 1000 + i as u64 + 1);
         let seed = self.seed.child(1000 + number);
-        match &which[..] {
-            &[a, b] => self.pair([a, b], seed),
-            _ => self.extended(chosen, step, &which, seed),
-        }
+        let terms = match &which[..] {
+            &[a, b] => self.pair([a, b], seed)?,
+            _ => self.extended(chosen, step, &which, seed)?,
+        };
+        Ok(Untried { price: self.price(&which), which, terms })
     }
 
     fn pair(&self, which: [usize; 2], seed: Seed) -> Result<Sought<'a>> {

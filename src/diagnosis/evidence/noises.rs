@@ -76,8 +76,7 @@ impl Noisy<'_> {
 /// The noises that a model is weighed under.
 #[derive(Debug, Default)]
 pub(crate) struct Noises<'a> {
-    /// Those that are kept, most evidence first, that of the named one counted
-    /// tenfold.
+    /// Those that are kept, in the order of what they are worth.
     pub(crate) kept: Vec<Noisy<'a>>,
     /// The named one, where it is not among them.
     pub(crate) dropped: Option<Noisy<'a>>,

@@ -113,9 +113,9 @@ impl<'a> Weighed<'a> {
         Ok(carried(&old, &[place.to_vec()], new, &owns))
     }
 
-    /// About ln of its evidence in either way; that of the named one counts
-    /// tenfold, so that others take its place only where they are better by
-    /// far.
+    /// About ln of its evidence in either way, with its probability
+    /// beforehand; that of the named one counts tenfold, so that others take
+    /// its place only where they are better by far.
     pub(super) fn worth(&self) -> f64 {
         let named = if self.program.is_named() { LN_10 } else { 0.0 };
         either_way(self.logs()) + named + beforehand(&self.name)
