@@ -91,3 +91,110 @@ impl<M: Member> Together<M> {
         Some(Box::new(own))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::model::{Assembled, ByEvent, Information, Posterior, With};
+    use crate::noise;
+    use crate::observe::Series;
+    use crate::physics::Track;
+    use crate::physics::friction::Laws;
+    use crate::seed::Seed;
+
+    /// Three events on inclines, with errors of different kinds.
+    fn events(one_law: bool) -> Together {
+        let of = |(i, errors): (usize, &str)| {
+            let i = i as f64;
+            let times: Vec<f64> =
+                (1..30).map(|t| 0.5 * f64::from(t)).collect();
+            let speed = |t: &f64| (1.5 + 0.2 * i) * t + (2.0 * t).sin();
+            let speeds = times.iter().map(speed).collect();
+            let track = Track::incline(30.0 + i, 900.0).unwrap();
+            let event = Event::on(track)
+                .named(format!("e{i}"))
+                .velocity(Series::velocity(times, speeds).unwrap())
+                .build()
+                .unwrap();
+            let law = Laws::default().parse("coulomb + turbulent").unwrap();
+            let noise = noise::parse(errors).unwrap();
+            Assembled::new(event, law, noise, &BTreeMap::new()).unwrap()
+        };
+        let errors = ["ar(1)", "iid", "ou + white + tails"];
+        let events = errors.into_iter().enumerate().map(of).collect();
+        match one_law {
+            true => Together::with_one_law(events).unwrap(),
+            false => Together::new(events).unwrap(),
+        }
+    }
+
+    /// Differences of numbers of about 1 to 1e3, by round-off, and by that of
+    /// second differences of the priors.
+    fn assert_alike(found: &Information, known: &Information) {
+        let near = |a: &f64, b: &f64| {
+            let off = (a - b).abs() / b.abs().max(1.0);
+            assert!(off < 1e-6, "{a} for {b}");
+        };
+        let (a, b) = (found.density, known.density);
+        assert_eq!((a.rejected, b.rejected), (None, None));
+        near(&a.log_prior, &b.log_prior);
+        near(&a.log_jacobian, &b.log_jacobian);
+        near(&a.log_likelihood, &b.log_likelihood);
+        let pairs = found.gradient.iter().zip(known.gradient.iter());
+        pairs.for_each(|(a, b)| near(a, b));
+        let pairs = found.precision.iter().zip(known.precision.iter());
+        pairs.for_each(|(a, b)| near(a, b));
+    }
+
+    #[test]
+    fn derivatives_by_event_add_up_to_those_of_the_whole() {
+        let sets: [&[&str]; 4] = [
+            &[],
+            &["friction-patch"],
+            &["release-position"],
+            &["release-position", "friction-patch"],
+        ];
+        for (one_law, sharing) in [
+            (true, Sharing::Shared),
+            (true, Sharing::Pooled),
+            (false, Sharing::Shared),
+            (false, Sharing::Pooled),
+        ] {
+            let program = events(one_law);
+            let all = program.catalogue(&Catalogue::default(), sharing);
+            for names in sets {
+                let own = |m: &&Box<dyn Mechanism>| names.contains(&m.name());
+                let own: Vec<&dyn Mechanism> =
+                    all.iter().filter(own).map(AsRef::as_ref).collect();
+                assert_eq!(own.len(), names.len());
+                let whole = With::new(&program, &own);
+                let apart = ByEvent::new(&program, &own).unwrap();
+                assert_eq!(apart.added(), whole.added());
+                assert_eq!(apart.events().len(), 3);
+                let whole = Posterior::new(&whole).unwrap();
+                let apart = Posterior::new(&apart).unwrap();
+                let n = whole.dimension();
+                let mut rng = Seed::new(5).rng();
+                let z = whole.draw_place(&mut rng).unwrap().unwrap();
+                let known = whole.information(&z).unwrap();
+                assert_alike(&apart.information(&z).unwrap(), &known);
+                // Mixed ones, and some that single events know nothing of.
+                let wave = |i, j| (0.7 * (i * n + j) as f64).sin();
+                let mut directions = DMatrix::from_fn(5, n, wave);
+                directions.row_mut(1).fill(0.0);
+                directions[(1, n - 1)] = 1.0;
+                let known = whole.information_along(&z, &directions).unwrap();
+                let found = apart.information_along(&z, &directions).unwrap();
+                assert_alike(&found, &known);
+                let last = directions.rows(1, 1).into_owned();
+                let known = whole.information_along(&z, &last).unwrap();
+                let found = apart.information_along(&z, &last).unwrap();
+                assert_alike(&found, &known);
+            }
+        }
+    }
+}

@@ -8,7 +8,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::error::Result;
-use crate::model::{Point, Posterior};
+use crate::model::{Information, Point, Posterior};
 
 /// A log density about a place, to second order.
 #[derive(Debug, Clone)]
@@ -86,18 +86,42 @@ pub(crate) trait Landscape {
 pub(crate) struct Held<'a, 'm> {
     pub(crate) posterior: &'a Posterior<'m>,
     pub(crate) held: &'a [usize],
+    /// The others as directions, where the slope along what is held is not
+    /// asked for: few of them cost less.
+    pub(crate) free: Option<&'a DMatrix<f64>>,
 }
 
-impl Held<'_, '_> {
+impl<'a, 'm> Held<'a, 'm> {
+    /// With the slope along all coordinates.
+    pub(crate) fn new(
+        posterior: &'a Posterior<'m>,
+        held: &'a [usize],
+    ) -> Self {
+        Self { posterior, held, free: None }
+    }
+
     /// The slope at a place; `None` where there is no density.
     pub(crate) fn slope_at(&self, at: &[f64]) -> Result<Option<Slope>> {
-        let about = self.posterior.information(at)?;
+        let about = match self.free {
+            None => self.posterior.information(at)?,
+            Some(free) => self.along(at, free)?,
+        };
         let slope = Slope {
             height: about.density.on_line(),
             gradient: about.gradient,
             precision: about.precision,
         };
         Ok(slope.is_usable().then_some(slope))
+    }
+
+    /// The information along the free coordinates, zero along the others.
+    fn along(&self, at: &[f64], free: &DMatrix<f64>) -> Result<Information> {
+        let is_free = |i: &usize| !self.held.contains(i);
+        let places: Vec<usize> = (0..at.len()).filter(is_free).collect();
+        let found = self.posterior.information_along(at, free)?;
+        let mut all = Information::zero(at.len());
+        all.add(&found, &places, 1.0);
+        Ok(all)
     }
 }
 
@@ -339,7 +363,8 @@ pub fn climb(
     posterior: &Posterior<'_>,
     start: &[f64],
 ) -> Result<Option<Peak>> {
-    Climb::default().from(posterior, start, &[], |_, _| false)
+    let landscape = Held::new(posterior, &[]);
+    Climb::default().from(&landscape, start, |_, _| false)
 }
 
 impl Climb {
@@ -348,15 +373,13 @@ impl Climb {
     /// which `ends_at` says that it leads nowhere new.
     pub(super) fn from(
         &self,
-        posterior: &Posterior<'_>,
+        landscape: &Held<'_, '_>,
         start: &[f64],
-        held: &[usize],
         ends_at: impl Fn(&DVector<f64>, f64) -> bool,
     ) -> Result<Option<Peak>> {
-        let landscape = Held { posterior, held };
         let Some(slope) = landscape.slope_at(start)? else { return Ok(None) };
         let start = (DVector::from_column_slice(start), slope, ());
-        let found = self.ascend(&landscape, start, ends_at)?;
+        let found = self.ascend(landscape, start, ends_at)?;
         Ok(found.map(Peak::of))
     }
 }
@@ -364,13 +387,12 @@ impl Climb {
 /// The best place near a start among those that share some coordinates with
 /// it.
 pub(super) fn climb_holding(
-    posterior: &Posterior<'_>,
+    landscape: &Held<'_, '_>,
     start: &[f64],
-    held: &[usize],
     steps: usize,
 ) -> Result<Option<Peak>> {
     let climb = Climb { steps, leaps: 0, ..Climb::default() };
-    climb.from(posterior, start, held, |_, _| false)
+    climb.from(landscape, start, |_, _| false)
 }
 
 #[cfg(test)]

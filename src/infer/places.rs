@@ -133,7 +133,7 @@ fn glance<'s>(
     place: &'s HeldPlace,
 ) -> Result<Option<Looked<'s>>> {
     let mut line = DVector::from_column_slice(&place.line);
-    let landscape = Held { posterior, held: &grid.held };
+    let landscape = Held::new(posterior, &grid.held);
     let Some(slope) = landscape.slope_at(line.as_slice())? else {
         return Ok(None);
     };
@@ -226,8 +226,9 @@ impl<'s> Looked<'s> {
         posterior: &Posterior<'_>,
         steps: usize,
     ) -> Result<()> {
-        let (line, held) = (self.peak.line.as_slice(), &self.grid.held[..]);
-        if let Some(peak) = climb_holding(posterior, line, held, steps)? {
+        let landscape = Held::new(posterior, &self.grid.held);
+        let line = self.peak.line.as_slice();
+        if let Some(peak) = climb_holding(&landscape, line, steps)? {
             self.peak = peak;
             self.weigh();
         }

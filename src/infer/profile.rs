@@ -11,7 +11,7 @@
 
 use nalgebra::DVector;
 
-use super::climb::{Peak, climb_holding};
+use super::climb::{Held, Peak, climb_holding};
 use super::proposal::Component;
 use crate::error::Result;
 use crate::model::Posterior;
@@ -98,8 +98,8 @@ impl<'a> Profile<'a> {
         let mut met = Met::default();
         for count in 1..=STRIDES {
             let start = &at + &stride;
-            let found =
-                climb_holding(posterior, start.as_slice(), &held, FEW)?;
+            let landscape = Held::new(posterior, &held);
+            let found = climb_holding(&landscape, start.as_slice(), FEW)?;
             let high = |f: &Peak| f.height > self.peak.height - DOWN;
             let Some(found) = found.filter(high) else { break };
             let widths = count as f64 * STRIDE;

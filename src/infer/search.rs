@@ -13,7 +13,7 @@ use std::ops::Range;
 
 use nalgebra::DVector;
 
-use super::climb::{Climb, Peak};
+use super::climb::{Climb, Held, Peak};
 use super::places::{
     HeldGrid, Looked, STEPS_ASIDE, Step, by_height, glanced, spread, walked,
 };
@@ -140,7 +140,8 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
                 peak.height > height && peak.distance(line) < ALIKE
             })
         };
-        let found = self.climbs.from(self.posterior, start, &[], known)?;
+        let landscape = Held::new(self.posterior, &[]);
+        let found = self.climbs.from(&landscape, start, known)?;
         let Some(peak) = found else {
             return Ok(());
         };

@@ -1,12 +1,10 @@
 //! One of several events of a program, and what all of them have in common.
 
 use super::any_program::AnyProgram;
-use super::face::{Model, Point};
-use super::listener::Collector;
 use super::number::Number;
 use super::program::Program;
 use super::run::{Entered, Run};
-use crate::error::{Outcome, Result};
+use crate::error::Outcome;
 use crate::mechanism::Unknown;
 
 /// A program for one of its events alone; itself a program.
@@ -46,16 +44,6 @@ impl<'a> Common<'a> {
     ) -> Self {
         Self { program, added }
     }
-
-    /// How many parameters they are.
-    ///
-    /// # Errors
-    /// A model that fails.
-    pub(crate) fn dimension(&self) -> Result<usize> {
-        let mut collector = Collector::default();
-        self.evaluate(Point::Middle, Some(&mut collector))?;
-        Ok(collector.collected.names.len())
-    }
 }
 
 impl Program for Common<'_> {
@@ -68,7 +56,7 @@ impl Program for Common<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Label, Posterior};
+    use crate::model::{Label, Model, Posterior};
     use crate::prior::Normal;
     use crate::scalar::Real;
 
@@ -115,7 +103,6 @@ mod tests {
         assert_eq!(names(&Alone::new(&two, 1)), ["centre", "b.own"]);
         let common = Common::new(&two, Vec::new());
         assert_eq!(names(&common), ["centre"]);
-        assert_eq!(common.dimension().unwrap(), 1);
     }
 
     #[test]

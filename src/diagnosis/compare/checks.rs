@@ -3,14 +3,15 @@
 use std::f64::consts::LN_10;
 
 use crate::diagnosis::compare::least_squares::least_squares;
+use crate::diagnosis::evidence::apart::estimate;
 use crate::diagnosis::evidence::fit::Fit;
 use crate::diagnosis::findings::{BeforeAfter, Improvement, Pictured};
 use crate::draws::{Draws, median, uncorrelated_p};
 use crate::elpd::leave_one_out;
 use crate::error::{Error, Result};
-use crate::infer::{Backend, LaplaceMixture, Quiet, SearchSpace, climb};
+use crate::infer::{LaplaceMixture, Precision, SearchSpace, climb};
 use crate::mechanism::Mechanism;
-use crate::model::{AnyProgram, Point, Posterior, With};
+use crate::model::{AnyProgram, ByEvent, Point, Posterior, With};
 use crate::noise::Stationary;
 use crate::observe::{Event, Quantity, Series};
 use crate::predict::{Bands, predictive_of_all, rmse};
@@ -195,11 +196,12 @@ fn held_out(
     fitted: &FittedModel<'_>,
     values: &[Vec<f64>],
 ) -> Result<f64> {
-    let with = With::new(program, &fitted.mechanisms).knowing(KNOWN);
-    let posterior = Posterior::new(&with)?;
+    let known = With::new(program, &[]).knowing(KNOWN);
+    let with = ByEvent::new(&known, &fitted.mechanisms)?;
     let plain = With::new(program, &fitted.mechanisms);
     let whole = Posterior::new(&plain)?;
     let predicted = if fitted.rough {
+        let posterior = Posterior::new(&with)?;
         let Some(peak) = climb(&posterior, &fitted.fit.best)? else {
             return Ok(f64::NAN);
         };
@@ -211,7 +213,7 @@ fn held_out(
             grids: Vec::new(),
         });
         let seed = fitted.first.child(1);
-        let found = search.explore(&posterior, seed, &Quiet)?;
+        let found = estimate(&with, &search, Precision::Rough, seed)?;
         let Some(draws) = found.draws else { return Ok(f64::NAN) };
         replay(&whole, &draws)?.means
     };

@@ -6,7 +6,7 @@ use super::screen::COARSE;
 use crate::error::Result;
 use crate::infer::{LaplaceMixture, Precision, SearchSpace};
 use crate::mechanism::Mechanism;
-use crate::model::{AnyProgram, Posterior, With};
+use crate::model::{AnyProgram, ByEvent, Posterior, With};
 use crate::seed::Seed;
 
 /// A model whose mechanisms are known, with where it is best on the line.
@@ -139,7 +139,7 @@ impl<'a> Sought<'a> {
     /// # Errors
     /// A model that fails.
     pub(crate) fn most(&self, program: &dyn AnyProgram) -> Result<f64> {
-        let with = With::new(program, &self.mechanisms);
+        let with = ByEvent::new(program, &self.mechanisms)?;
         let posterior = Posterior::new(&with)?;
         let starts = self.space.starts.iter().take(BEST_KNOWN).cloned();
         let starts = starts.collect();
@@ -194,7 +194,7 @@ impl<'a> Combination<'a> {
         let found = match self.look.searching(&backend) {
             Some(several) => several,
             None => {
-                let with = With::new(program, mechanisms);
+                let with = ByEvent::new(program, mechanisms)?;
                 let posterior = Posterior::new(&with)?;
                 let seed_of = seed.child(3);
                 let found = prospect(program, mechanisms, backend, seed_of)?;

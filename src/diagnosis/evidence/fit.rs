@@ -7,11 +7,10 @@ use crate::diagnosis::evidence::edges::on_line;
 use crate::draws::Draws;
 use crate::error::{Error, Result};
 use crate::infer::{
-    Backend, Frozen, Inference, LaplaceMixture, Peak, Peaks, Precision, Quiet,
-    climb,
+    Frozen, Inference, LaplaceMixture, Peak, Peaks, Precision, Quiet, climb,
 };
 use crate::mechanism::{Mechanism, Unknown};
-use crate::model::{AnyProgram, Point, Posterior, Program, With};
+use crate::model::{AnyProgram, ByEvent, Point, Posterior, Program};
 use crate::prior::AnyPrior;
 use crate::seed::Seed;
 
@@ -84,7 +83,7 @@ impl Prospect {
         let Searched::Proposal(frozen) = &self.searched else {
             return Ok(None);
         };
-        let with = With::new(program, mechanisms);
+        let with = ByEvent::new(program, mechanisms)?;
         let posterior = Posterior::new(&with)?;
         let mut highest: Option<Peak> = None;
         for start in frozen.mixture.middles().into_iter().take(MIDDLES) {
@@ -138,7 +137,7 @@ impl Prospect {
         threshold: f64,
         seed: Seed,
     ) -> Result<Self> {
-        let with = With::new(program, mechanisms);
+        let with = ByEvent::new(program, mechanisms)?;
         let posterior = Posterior::new(&with)?;
         let most = self.backend.schedule.rounds;
         for rounds in [FEW_ROUNDS + 2, most] {
@@ -193,16 +192,16 @@ impl Prospect {
         precision: Precision,
         seed: Seed,
     ) -> Result<Fit> {
-        let with = With::new(program, mechanisms);
+        let with = ByEvent::new(program, mechanisms)?;
         let posterior = Posterior::new(&with)?;
         let backend = &self.backend;
         let found = match &self.searched {
             Searched::Proposal(frozen) => {
                 backend.estimate(&posterior, frozen, precision, seed, &Quiet)
             }
-            Searched::Highest(_) => apart::estimate(
-                program, mechanisms, &posterior, backend, precision, seed,
-            ),
+            Searched::Highest(_) => {
+                apart::estimate(&with, backend, precision, seed)
+            }
         };
         let mut fit = fit_of(&posterior, found?, with.added())?;
         if let Searched::Highest(Some(highest)) = &self.searched {
@@ -260,7 +259,7 @@ pub(crate) fn prospect(
     backend: LaplaceMixture,
     seed: Seed,
 ) -> Result<Prospect> {
-    let with = With::new(program, mechanisms);
+    let with = ByEvent::new(program, mechanisms)?;
     let posterior = Posterior::new(&with)?;
     let added = with.added();
     if program.events() > 1 {
@@ -286,17 +285,9 @@ pub fn fit(
     backend: &LaplaceMixture,
     seed: Seed,
 ) -> Result<Fit> {
-    let with = With::new(program, mechanisms);
+    let with = ByEvent::new(program, mechanisms)?;
     let posterior = Posterior::new(&with)?;
-    let found = match program.events() {
-        1 => backend.explore(&posterior, seed, &Quiet)?,
-        _ => {
-            let sharp = Precision::Sharp;
-            apart::estimate(
-                program, mechanisms, &posterior, backend, sharp, seed,
-            )?
-        }
-    };
+    let found = apart::estimate(&with, backend, Precision::Sharp, seed)?;
     fit_of(&posterior, found, with.added())
 }
 

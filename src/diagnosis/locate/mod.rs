@@ -23,7 +23,7 @@ use crate::draws::Draws;
 use crate::error::{Error, Result};
 use crate::infer::nested::{Effort, integrated};
 use crate::mechanism::{Extent, Mechanism};
-use crate::model::{AnyProgram, Posterior, Program, With};
+use crate::model::{AnyProgram, ByEvent, Posterior, With};
 use crate::parallel;
 use crate::physics::forces::Axis;
 use crate::seed::Seed;
@@ -135,7 +135,7 @@ pub(crate) fn outlook(
     seed: Seed,
 ) -> Result<Option<Outlook>> {
     let form = FreeForm::cells(extent, Axis::Place, FEW_CELLS);
-    let with = With::new(program, &[&form]);
+    let with = ByEvent::new(program, &[&form])?;
     let posterior = Posterior::new(&with)?;
     let sought = Sought::of(&posterior, extent, FEW_CELLS);
     let looks = parallel::try_map(owns, |own| sought.looks(own, COARSE))?;
@@ -151,7 +151,7 @@ pub(crate) fn outlook(
     };
     let (promised, own) =
         (best.log_evidence, best.top.line.as_slice().to_vec());
-    let (shared, begun) = (program.events() > 1, seed.child(0));
+    let (shared, begun) = (program.count_of_events() > 1, seed.child(0));
     let learned = Marginal::learned(sought, looks, shared, GLANCE, begun)?;
     let Some((marginal, learned)) = learned else { return Ok(None) };
     let found = integrated(&marginal, &learned, GLANCE, seed.child(1))?;
@@ -170,9 +170,10 @@ pub(crate) fn left(
     extent: &Extent,
     seed: Seed,
 ) -> Result<Option<FreeForce>> {
-    let with = With::new(program, mechanisms);
+    let axes = [Axis::Place];
     let whole = Fit { added: 0, ..fit.clone() };
-    along(&with, extent, &[Axis::Place], &whole, seed).map(|mut all| all.pop())
+    along((program, mechanisms), extent, &axes, &whole, seed)
+        .map(|mut all| all.pop())
 }
 
 /// The same along several axes; most sharply where the force is likely. An axis
@@ -187,13 +188,13 @@ pub(crate) fn locate_all(
     none: &Fit,
     seed: Seed,
 ) -> Result<Vec<FreeForce>> {
-    let forces = along(program, extent, axes, none, seed)?;
+    let forces = along((program, &[]), extent, axes, none, seed)?;
     if forces.is_empty() { Err(no_density()) } else { Ok(forces) }
 }
 
 /// The forces along those axes along which one has a density.
 fn along(
-    program: &dyn AnyProgram,
+    (program, mechanisms): (&dyn AnyProgram, &[&dyn Mechanism]),
     extent: &Extent,
     axes: &[Axis],
     none: &Fit,
@@ -201,11 +202,16 @@ fn along(
 ) -> Result<Vec<FreeForce>> {
     let form = |axis: &Axis| FreeForm::cells(extent, *axis, CELLS);
     let forms: Vec<FreeForm> = axes.iter().map(form).collect();
-    let with: Vec<With<'_>> =
-        forms.iter().map(|form| With::new(program, &[form])).collect();
+    let with = forms.iter().map(|form| {
+        ByEvent::new(
+            program,
+            &[&[form as &dyn Mechanism], mechanisms].concat(),
+        )
+    });
+    let with = with.collect::<Result<Vec<_>>>()?;
     let posteriors = with.iter().map(|with| Posterior::new(with));
     let posteriors = posteriors.collect::<Result<Vec<_>>>()?;
-    let shared = program.events() > 1;
+    let shared = program.count_of_events() > 1;
     let each = axes.iter().zip(0..).map(|(axis, i)| (axis, seed.child(i)));
     let begun = each.zip(&posteriors);
     let learned = parallel::try_map(begun, |((axis, seed), posterior)| {

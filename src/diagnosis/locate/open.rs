@@ -19,7 +19,7 @@ use crate::draws::{Draws, log_sum_exp};
 use crate::error::Result;
 use crate::infer::nested::{Effort, Integral, integrated};
 use crate::mechanism::Extent;
-use crate::model::{AnyProgram, Posterior, Program, With};
+use crate::model::{AnyProgram, ByEvent, Posterior, Program, With};
 use crate::seed::Seed;
 
 /// How many draws are told of.
@@ -93,7 +93,7 @@ fn whole(
     seed: Seed,
 ) -> Result<Option<Integral<Vec<Vec<f64>>>>> {
     let form = FreeForm::cells(extent, force.axis, CELLS);
-    let with = With::new(program, &[&form]);
+    let with = ByEvent::new(program, &[&form])?;
     let posterior = Posterior::new(&with)?;
     let besides = highest(&force.looks)
         .and_then(|look| confounded(&look.tangent, extent));

@@ -11,7 +11,7 @@ use crate::diagnosis::evidence::fit::fit;
 use crate::draws::log_sum_exp;
 use crate::error::Outcome;
 use crate::infer::LaplaceMixture;
-use crate::model::{Label, Number, Run};
+use crate::model::{Label, Number, Program, Run};
 use crate::noise::Iid;
 use crate::observe::{Event, Series};
 use crate::physics::friction::Coulomb;

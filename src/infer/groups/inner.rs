@@ -1,19 +1,19 @@
 //! What a group holds at given common coordinates.
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
 
 use super::group::{Group, Grouped};
 use crate::error::Result;
 use crate::infer::backends::laplace_mixture::LaplaceMixture;
-use crate::infer::climb::{Peak, climb_holding};
+use crate::infer::climb::{Held, Peak, climb_holding};
 use crate::infer::log_sum_exp;
 use crate::infer::proposal::Mixture;
 use crate::infer::proposal::{PRIOR_SHARE, blended, log_target};
 use crate::infer::schedule::Schedule;
 use crate::infer::search::SearchSpace;
 use crate::infer::weights::systematic;
-use crate::model::{Point, Posterior, Slice};
+use crate::model::{Point, Posterior, Slice, unit_directions};
 use crate::seed::{Rng, Seed};
 
 /// How many draws estimate what a group holds at given common coordinates. The
@@ -40,6 +40,8 @@ pub(super) struct Inner<'a> {
     /// Which of its coordinates are in common, and which its own.
     held: Vec<usize>,
     own: Vec<usize>,
+    /// The own ones as directions.
+    free: DMatrix<f64>,
 }
 
 impl<'a> Inner<'a> {
@@ -52,7 +54,8 @@ impl<'a> Inner<'a> {
             let of_common = |i: &usize| common.places.contains(&places[*i]);
             let (held, own): (Vec<usize>, Vec<usize>) =
                 (0..places.len()).partition(of_common);
-            Self { group, held, own }
+            let free = unit_directions(&own, places.len());
+            Self { group, held, own, free }
         };
         grouped.groups.iter().map(inner).collect()
     }
@@ -110,7 +113,11 @@ impl<'a> Inner<'a> {
 
     /// The best place near one, with the same common coordinates.
     fn climbed(&self, at: &[f64]) -> Result<Option<Peak>> {
-        climb_holding(self.group.posterior, at, &self.held, FEW)
+        let landscape = Held {
+            free: Some(&self.free),
+            ..Held::new(self.group.posterior, &self.held)
+        };
+        climb_holding(&landscape, at, FEW)
     }
 
     /// About the own coordinates, given those in common: what they look like

@@ -17,7 +17,6 @@
 //! its own: a product of unbiased estimates leaves the estimate of Z unbiased
 //! (Tran, Scharth, Gunawan, Kohn, Brown, Hawkins 2021).
 
-mod assembly;
 mod group;
 mod inner;
 mod region;
@@ -40,7 +39,6 @@ use crate::error::{Error, Result};
 use crate::model::{Point, Posterior};
 use crate::seed::Seed;
 
-use assembly::Assembly;
 pub use group::{Group, Grouped};
 use inner::Inner;
 use region::Region;
@@ -190,22 +188,20 @@ impl LaplaceMixture {
         progress: &dyn Progress,
     ) -> Result<Inference> {
         progress.begin("importance sampling", None);
-        let assembly = Assembly::new(grouped, common);
-        let whole = Posterior::new(&assembly)?;
+        let whole = grouped.whole;
         let schedule = Schedule { good_share: JOINT, ..self.schedule };
-        let parts = components(&whole, &self.space, &schedule, seed.child(0))?;
+        let parts = components(whole, &self.space, &schedule, seed.child(0))?;
         let mut joint = Frozen::new(mixture(&parts)?);
         for rounds in [HOPELESS_ROUNDS, JOINT_ROUNDS] {
             let seed_of = seed.child(2).child(rounds);
-            joint = joint.learned(&whole, &schedule, rounds, seed_of)?;
+            joint = joint.learned(whole, &schedule, rounds, seed_of)?;
             let share = 1.0 / (1.0 + joint.excess);
             if share < 0.1 * JOINT {
                 break;
             }
         }
         if joint.good {
-            let (whole, sharp) = (grouped.whole, Precision::Sharp);
-            let seed = seed.child(3);
+            let (sharp, seed) = (Precision::Sharp, seed.child(3));
             let found = estimated(whole, &joint, &schedule, sharp, seed)?;
             if found.does {
                 return Ok(found.made);

@@ -4,7 +4,7 @@
 use super::*;
 use crate::error::Outcome;
 use crate::infer::Quiet;
-use crate::model::{Density, Information, Label, Model, Number, Program, Run};
+use crate::model::{Label, Number, Program, Run};
 use crate::prior::{AnyPrior, Normal};
 use crate::scalar::Real;
 
@@ -46,26 +46,6 @@ fn with_events(test: impl FnOnce(&Grouped<'_>, &Group<'_>)) {
     test(&Grouped { whole, common: None, groups }, &common);
 }
 
-#[test]
-fn groups_add_up_to_the_whole() {
-    with_events(|grouped, common| {
-        let z = [0.7, -0.3, 0.4, 1.1];
-        let known = grouped.whole.information(&z).unwrap();
-        let found = Assembly::new(grouped, common).information(&z).unwrap();
-        // Round-off, and that of differences of the priors.
-        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-6, "{a} {b}");
-        let parts = |of: &Information| {
-            let Density { log_prior, log_jacobian, log_likelihood, .. } =
-                of.density;
-            let numbers = [log_prior, log_jacobian, log_likelihood];
-            let derivatives = of.gradient.iter().chain(of.precision.iter());
-            numbers.into_iter().chain(derivatives.copied().collect::<Vec<_>>())
-        };
-        assert_eq!(found.density.rejected, None);
-        parts(&known).zip(parts(&found)).for_each(|(a, b)| near(a, b));
-    });
-}
-
 /// By midpoints, to 1e-5: both integrands are smooth and gone at the ends.
 fn log_evidence() -> f64 {
     let sum = |from: f64, to: f64, count: i32, f: &dyn Fn(f64) -> f64| {
@@ -87,10 +67,8 @@ fn one_within_the_other_is_as_all_at_once() {
     let laplace = LaplaceMixture::default();
     with_events(|grouped, common| {
         let seed = Seed::new(1);
-        let assembly = Assembly::new(grouped, common);
-        let whole = Posterior::new(&assembly).unwrap();
         let LaplaceMixture { space, schedule } = &laplace;
-        let parts = components(&whole, space, schedule, seed.child(0));
+        let parts = components(grouped.whole, space, schedule, seed.child(0));
         let parts = parts.unwrap();
         let effort = laplace.effort(Precision::Sharp);
         let nested =
