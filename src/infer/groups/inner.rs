@@ -29,6 +29,8 @@ const SHARP: f64 = 0.3;
 /// quarter of the usual, since no more than a few draws at a time are made of it.
 const EARLY: usize = 200;
 const LATE: usize = 500;
+/// The most rounds.
+const LEARNED: u64 = 4;
 /// The most steps to where a group is best at given common coordinates, from
 /// where a region's normal approximation has it: five cost 7 % more CPU, with the
 /// same evidences (docs/record/speed-tried.md).
@@ -95,6 +97,7 @@ impl<'a> Inner<'a> {
             good_share: SHARP,
             learning_draws: EARLY,
             judging_draws: LATE,
+            rounds: LEARNED,
             ..laplace.schedule
         };
         let search = LaplaceMixture { space, schedule };

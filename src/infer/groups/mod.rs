@@ -59,10 +59,11 @@ const FEW_ROUNDS: u64 = 2;
 /// nested, a draw costs dozens of times as much.
 const JOINT: f64 = 0.25;
 
-/// After how many rounds it is given up, and after how many where no tenth of
-/// that share is in sight.
+/// After how many rounds it is given up, and after how many where less than
+/// such a part of that share is in sight.
 const JOINT_ROUNDS: u64 = 6;
 const HOPELESS_ROUNDS: u64 = 2;
+const HOPELESS: f64 = 0.25;
 
 /// How the evidence of groups with something in common is found.
 const NESTED: &str = "importance sampling of what is in common, and of each \
@@ -196,7 +197,7 @@ impl LaplaceMixture {
             let seed_of = seed.child(2).child(rounds);
             joint = joint.learned(whole, &schedule, rounds, seed_of)?;
             let share = 1.0 / (1.0 + joint.excess);
-            if share < 0.1 * JOINT {
+            if share < HOPELESS * JOINT {
                 break;
             }
         }

@@ -13,6 +13,9 @@ use crate::seed::Seed;
 /// closely at the most, and how far these are apart, in widths, squared.
 const REGIONS: usize = 4;
 const FAR: f64 = 9.0;
+/// How much less than the best, in ln, a part may hold about which there is a
+/// region of its own: a draw in two hundred is made there.
+const HOLDS: f64 = 5.0;
 /// From how many places within a region modes of a group are looked for.
 const PLACES: usize = 6;
 
@@ -80,14 +83,16 @@ type Around<'p> = (Region, Vec<&'p DVector<f64>>);
 /// Regions around the parts that hold most, without shapes.
 fn around<'p>(parts: &'p [Component], common: &[usize]) -> Vec<Around<'p>> {
     let mut regions: Vec<Around<'p>> = Vec::new();
+    let best = parts.first().map_or(0.0, |part| part.log);
     for part in parts {
+        let holds = best - part.log < HOLDS;
         let Some(region) = Region::new(part, common) else { continue };
         let near = |r: &Around<'p>| r.0.distance(&region.middle) <= FAR;
         match regions.iter().position(near) {
             Some(k) if regions[k].1.len() < PLACES => {
                 regions[k].1.push(&part.mean);
             }
-            None if regions.len() < REGIONS => {
+            None if holds && regions.len() < REGIONS => {
                 regions.push((region, vec![&part.mean]));
             }
             _ => {}
