@@ -167,9 +167,9 @@ mod tests {
             let program = events(one_law);
             let all = program.catalogue(&Catalogue::default(), sharing);
             for names in sets {
-                let own = |m: &&Box<dyn Mechanism>| names.contains(&m.name());
-                let own: Vec<&dyn Mechanism> =
-                    all.iter().filter(own).map(AsRef::as_ref).collect();
+                let mut own: Vec<&dyn Mechanism> =
+                    all.iter().map(AsRef::as_ref).collect();
+                own.retain(|mechanism| names.contains(&mechanism.name()));
                 assert_eq!(own.len(), names.len());
                 let whole = With::new(&program, &own);
                 let apart = ByEvent::new(&program, &own).unwrap();
