@@ -150,6 +150,32 @@ mod tests {
         pairs.for_each(|(a, b)| near(a, b));
     }
 
+    /// What a program with mechanisms has for derivatives, taken of all events
+    /// at once and event by event.
+    fn assert_by_event(program: &Together, own: &[&dyn Mechanism]) {
+        let whole = With::new(program, own);
+        let apart = ByEvent::new(program, own).unwrap();
+        assert_eq!(apart.added(), whole.added());
+        assert_eq!(apart.events().len(), 3);
+        let whole = Posterior::new(&whole).unwrap();
+        let apart = Posterior::new(&apart).unwrap();
+        let n = whole.dimension();
+        let mut rng = Seed::new(5).rng();
+        let z = whole.draw_place(&mut rng).unwrap().unwrap();
+        let known = whole.information(&z).unwrap();
+        assert_alike(&apart.information(&z).unwrap(), &known);
+        // Mixed directions, and one that single events know nothing of.
+        let wave = |i, j| (0.7 * (i * n + j) as f64).sin();
+        let mixed = DMatrix::from_fn(5, n, wave);
+        let mut last = DMatrix::zeros(1, n);
+        last[(0, n - 1)] = 1.0;
+        for directions in [mixed, last] {
+            let known = whole.information_along(&z, &directions).unwrap();
+            let found = apart.information_along(&z, &directions).unwrap();
+            assert_alike(&found, &known);
+        }
+    }
+
     #[test]
     fn derivatives_by_event_add_up_to_those_of_the_whole() {
         let sets: [&[&str]; 4] = [
@@ -167,33 +193,12 @@ mod tests {
             let program = events(one_law);
             let all = program.catalogue(&Catalogue::default(), sharing);
             for names in sets {
-                let mut own: Vec<&dyn Mechanism> =
-                    all.iter().map(AsRef::as_ref).collect();
-                own.retain(|mechanism| names.contains(&mechanism.name()));
+                let own = all.iter().map(AsRef::as_ref);
+                let own =
+                    own.filter(|m: &&dyn Mechanism| names.contains(&m.name()));
+                let own: Vec<&dyn Mechanism> = own.collect();
                 assert_eq!(own.len(), names.len());
-                let whole = With::new(&program, &own);
-                let apart = ByEvent::new(&program, &own).unwrap();
-                assert_eq!(apart.added(), whole.added());
-                assert_eq!(apart.events().len(), 3);
-                let whole = Posterior::new(&whole).unwrap();
-                let apart = Posterior::new(&apart).unwrap();
-                let n = whole.dimension();
-                let mut rng = Seed::new(5).rng();
-                let z = whole.draw_place(&mut rng).unwrap().unwrap();
-                let known = whole.information(&z).unwrap();
-                assert_alike(&apart.information(&z).unwrap(), &known);
-                // Mixed ones, and some that single events know nothing of.
-                let wave = |i, j| (0.7 * (i * n + j) as f64).sin();
-                let mut directions = DMatrix::from_fn(5, n, wave);
-                directions.row_mut(1).fill(0.0);
-                directions[(1, n - 1)] = 1.0;
-                let known = whole.information_along(&z, &directions).unwrap();
-                let found = apart.information_along(&z, &directions).unwrap();
-                assert_alike(&found, &known);
-                let last = directions.rows(1, 1).into_owned();
-                let known = whole.information_along(&z, &last).unwrap();
-                let found = apart.information_along(&z, &last).unwrap();
-                assert_alike(&found, &known);
+                assert_by_event(&program, &own);
             }
         }
     }
