@@ -98,6 +98,30 @@ impl<'a> ByEvent<'a> {
     pub(crate) fn events(&self) -> &[Part<Own<'a>>] {
         &self.events
     }
+
+    /// The sum along so many directions of what all events say, each along some
+    /// of them.
+    fn summed(
+        &self,
+        directions: usize,
+        said: impl Fn(&[usize], &dyn Model) -> Result<(Information, Vec<usize>)>,
+    ) -> Result<Information> {
+        let mut sum = Information::zero(directions);
+        for Part { model, places } in &self.events {
+            let (found, along) = said(places, model)?;
+            sum.add(&found, &along, 1.0);
+            if sum.density.rejected.is_some() {
+                return Ok(sum);
+            }
+        }
+        if let Some(Part { model, places }) = &self.common {
+            // Each event counts its prior.
+            let again = 1.0 - self.events.len() as f64;
+            let (found, along) = said(places, model)?;
+            sum.add(&found, &along, again);
+        }
+        Ok(sum)
+    }
 }
 
 impl Model for ByEvent<'_> {
@@ -122,19 +146,10 @@ impl Model for ByEvent<'_> {
         if self.events.is_empty() {
             return self.whole.information(z);
         }
-        let mut sum = Information::zero(z.len());
-        for part in &self.events {
-            sum.add(&part.information(z)?, &part.places, 1.0);
-            if sum.density.rejected.is_some() {
-                return Ok(sum);
-            }
-        }
-        if let Some(common) = &self.common {
-            // Each event counts its prior.
-            let again = 1.0 - self.events.len() as f64;
-            sum.add(&common.information(z)?, &common.places, again);
-        }
-        Ok(sum)
+        let whole = |places: &[usize], model: &dyn Model| {
+            Ok((model.information(&at(z, places))?, places.to_vec()))
+        };
+        self.summed(z.len(), whole)
     }
 
     fn information_along(
@@ -146,53 +161,37 @@ impl Model for ByEvent<'_> {
         if self.events.is_empty() {
             return self.whole.information_along(z, directions);
         }
-        let mut sum = Information::zero(directions.nrows());
-        for part in &self.events {
-            part.add_along(z, directions, 1.0, &mut sum)?;
-            if sum.density.rejected.is_some() {
-                return Ok(sum);
-            }
-        }
-        if let Some(common) = &self.common {
-            let again = 1.0 - self.events.len() as f64;
-            common.add_along(z, directions, again, &mut sum)?;
-        }
-        Ok(sum)
+        let along = |places: &[usize], model: &dyn Model| {
+            known_along(model, &at(z, places), directions, places)
+        };
+        self.summed(directions.nrows(), along)
     }
 }
 
-impl<M: Model> Part<M> {
-    /// Its coordinates at a place of the whole.
-    fn at(&self, whole: &[f64]) -> Vec<f64> {
-        self.places.iter().map(|&i| whole[i]).collect()
-    }
+/// Some coordinates of a place.
+fn at(place: &[f64], some: &[usize]) -> Vec<f64> {
+    some.iter().map(|&i| place[i]).collect()
+}
 
-    fn information(&self, whole: &[f64]) -> Result<Information> {
-        self.model.information(&self.at(whole))
-    }
-
-    /// Adds a power of it along those directions of the whole that it knows.
-    fn add_along(
-        &self,
-        whole: &[f64],
-        directions: &DMatrix<f64>,
-        power: f64,
-        sum: &mut Information,
-    ) -> Result<()> {
-        let own = directions.select_columns(&self.places);
-        let is_known = |row: &usize| own.row(*row).iter().any(|x| *x != 0.0);
-        let known: Vec<usize> = (0..own.nrows()).filter(is_known).collect();
-        let (own, z) = (own.select_rows(&known), self.at(whole));
-        let found = match known.is_empty() {
-            true => Information {
-                density: self.model.evaluate(Point::Line(&z), None)?,
-                ..Information::zero(0)
-            },
-            false => self.model.information_along(&z, &own)?,
-        };
-        sum.add(&found, &known, power);
-        Ok(())
-    }
+/// What a model of some coordinates says along those directions of all that it
+/// knows, and which these are.
+fn known_along(
+    model: &dyn Model,
+    z: &[f64],
+    directions: &DMatrix<f64>,
+    places: &[usize],
+) -> Result<(Information, Vec<usize>)> {
+    let own = directions.select_columns(places);
+    let is_known = |row: &usize| own.row(*row).iter().any(|x| *x != 0.0);
+    let known: Vec<usize> = (0..own.nrows()).filter(is_known).collect();
+    let found = match known.is_empty() {
+        true => Information {
+            density: model.evaluate(Point::Line(z), None)?,
+            ..Information::zero(0)
+        },
+        false => model.information_along(z, &own.select_rows(&known))?,
+    };
+    Ok((found, known))
 }
 
 /// One of several events with what it has of the mechanisms.

@@ -198,10 +198,10 @@ fn held_out(
 ) -> Result<f64> {
     let known = With::new(program, &[]).knowing(KNOWN);
     let with = ByEvent::new(&known, &fitted.mechanisms)?;
+    let posterior = Posterior::new(&with)?;
     let plain = With::new(program, &fitted.mechanisms);
     let whole = Posterior::new(&plain)?;
     let predicted = if fitted.rough {
-        let posterior = Posterior::new(&with)?;
         let Some(peak) = climb(&posterior, &fitted.fit.best)? else {
             return Ok(f64::NAN);
         };
@@ -213,7 +213,8 @@ fn held_out(
             grids: Vec::new(),
         });
         let seed = fitted.first.child(1);
-        let found = estimate(&with, &search, Precision::Rough, seed)?;
+        let rough = Precision::Rough;
+        let found = estimate(&with, &posterior, &search, rough, seed)?;
         let Some(draws) = found.draws else { return Ok(f64::NAN) };
         replay(&whole, &draws)?.means
     };

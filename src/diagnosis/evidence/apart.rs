@@ -14,14 +14,14 @@ use crate::seed::Seed;
 /// An improper prior, or a model that fails.
 pub(crate) fn estimate(
     program: &ByEvent<'_>,
+    whole: &Posterior<'_>,
     backend: &LaplaceMixture,
     precision: Precision,
     seed: Seed,
 ) -> Result<Inference> {
-    let whole = Posterior::new(program)?;
     let events = program.events();
     if events.is_empty() {
-        return backend.explore(&whole, seed, &Quiet);
+        return backend.explore(whole, seed, &Quiet);
     }
     let posteriors = events.iter().map(|part| Posterior::new(&part.model));
     let posteriors: Vec<_> = posteriors.collect::<Result<_>>()?;
@@ -35,6 +35,6 @@ pub(crate) fn estimate(
     let groups = posteriors.iter().zip(places).map(group).collect();
     let places = program.common().map(|part| &part.places);
     let common = common.as_ref().zip(places).map(group);
-    let grouped = Grouped { whole: &whole, common, groups };
+    let grouped = Grouped { whole, common, groups };
     backend.estimate_groups(&grouped, precision, seed, &Quiet)
 }

@@ -200,7 +200,7 @@ impl Prospect {
                 backend.estimate(&posterior, frozen, precision, seed, &Quiet)
             }
             Searched::Highest(_) => {
-                apart::estimate(&with, backend, precision, seed)
+                apart::estimate(&with, &posterior, backend, precision, seed)
             }
         };
         let mut fit = fit_of(&posterior, found?, with.added())?;
@@ -287,7 +287,8 @@ pub fn fit(
 ) -> Result<Fit> {
     let with = ByEvent::new(program, mechanisms)?;
     let posterior = Posterior::new(&with)?;
-    let found = apart::estimate(&with, backend, Precision::Sharp, seed)?;
+    let found =
+        apart::estimate(&with, &posterior, backend, Precision::Sharp, seed)?;
     fit_of(&posterior, found, with.added())
 }
 
