@@ -20,7 +20,7 @@ use super::number::Number;
 use super::pass::{passes, run};
 use super::run::Source;
 use crate::error::{Error, Outcome, Result};
-use crate::noise::{Informing, Noise};
+use crate::noise::Noise;
 use crate::observe::Series;
 use crate::prior::Distribution;
 use crate::scalar::{Forward, Grad, Kind, Real};
@@ -71,14 +71,13 @@ impl<K: Forward> Listener<K> for Part<'_, '_, K> {
         residuals: &[Real<K>],
         noise: &dyn Noise<K>,
     ) -> Outcome {
-        let mut total = Real::new(0.0);
         let columns = &mut *self.columns;
-        noise.walk(series.grid(), residuals, &mut |value| {
-            let Informing { place, size, shape } = &value.informing;
-            columns.push(place);
-            columns.push(size);
-            shape.iter().for_each(|shape| columns.push(shape));
-            total += value.log_density;
+        if columns.done == 0 {
+            // Of most noises, a place and a size of each.
+            columns.jacobian.reserve(2 * residuals.len() + 1);
+        }
+        let total = noise.inform(series.grid(), residuals, &mut |number| {
+            columns.push(number);
         })?;
         self.log_likelihood = Some(total);
         Ok(())
@@ -112,9 +111,6 @@ fn bend<K: Kind>(declaration: &Declaration<'_, K>) -> f64 {
     if bend.is_finite() { bend.max(0.0) } else { 0.0 }
 }
 
-/// For how many columns room is made at once.
-const RESERVED: usize = 256;
-
 /// How many directions a pass takes at the most. One of 16 takes three
 /// quarters of the time that one of 8 and another of 2 take, at 464 values.
 const MOST: usize = 16;
@@ -129,7 +125,7 @@ pub(super) fn information(
     let count = along.count(z.len());
     let mut gradient = DVector::zeros(count);
     let mut columns = Columns {
-        jacobian: Jacobian::new(count, RESERVED),
+        jacobian: Jacobian::new(count),
         along,
         done: 0,
         next: 0,

@@ -28,7 +28,7 @@ impl Information {
             density: Density::ONE,
             gradient: DVector::zeros(dimension),
             precision: DMatrix::zeros(dimension, dimension),
-            jacobian: Jacobian::new(dimension, 0),
+            jacobian: Jacobian::new(dimension),
         }
     }
 
@@ -39,7 +39,7 @@ impl Information {
             density: self.density,
             gradient: directions * &self.gradient,
             precision,
-            jacobian: Jacobian::new(directions.nrows(), 0),
+            jacobian: Jacobian::new(directions.nrows()),
         }
     }
 

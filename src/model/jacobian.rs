@@ -24,11 +24,15 @@ pub(crate) struct Jacobian {
 }
 
 impl Jacobian {
-    /// Without columns, with room for some.
-    pub(super) fn new(dimension: usize, room: usize) -> Self {
+    /// Without columns.
+    pub(super) fn new(dimension: usize) -> Self {
         let width = dimension.div_ceil(BLOCK);
-        let blocks = Vec::with_capacity(width * room);
-        Self { blocks, width, dimension }
+        Self { blocks: Vec::new(), width, dimension }
+    }
+
+    /// Makes room for so many columns more than there are.
+    pub(super) fn reserve(&mut self, columns: usize) {
+        self.blocks.reserve(columns * self.width);
     }
 
     /// Writes the derivatives that a number carries into a column, from the
@@ -47,10 +51,10 @@ impl Jacobian {
             self.blocks.resize(begin + self.width, [0.0; BLOCK]);
         }
         let column = &mut self.blocks[begin..begin + self.width];
-        let blocks = column[first / BLOCK..].as_flattened_mut();
-        let partials = x.partials();
-        let count = partials.len().min(blocks.len());
-        blocks[..count].copy_from_slice(&partials[..count]);
+        let parts = x.partials().chunks(BLOCK);
+        for (block, part) in column[first / BLOCK..].iter_mut().zip(parts) {
+            block[..part.len()].copy_from_slice(part);
+        }
     }
 
     /// Keeps so many columns; those that are missing are zero.
@@ -128,17 +132,17 @@ mod tests {
 
     #[test]
     fn nothing_has_no_products() {
-        let none = Jacobian::new(3, 0);
+        let none = Jacobian::new(3);
         assert_eq!((none.count(), none.row(2).len()), (0, 0));
         assert_eq!(none.squared(), DMatrix::zeros(3, 3));
-        assert_eq!(Jacobian::new(0, 4).squared().len(), 0);
+        assert_eq!(Jacobian::new(0).squared().len(), 0);
     }
 
     #[test]
     fn products_are_those_of_dense_matrices() {
         // Within a block, of two and a half, and of three passes of 16.
         for dimension in [1, 7, 20, 45] {
-            let mut jacobian = Jacobian::new(dimension, 4);
+            let mut jacobian = Jacobian::new(dimension);
             for first in (0..dimension).step_by(16) {
                 for datum in 0..30 {
                     let partials: Vec<f64> = (first..dimension)

@@ -162,6 +162,25 @@ impl<K: Kind> Ar<Real<K>> {
         Ok(())
     }
 
+    /// Visits each innovation with its law, whatever the grid.
+    #[inline(always)]
+    fn innovated(
+        &self,
+        at: &Grid,
+        residuals: &[Real<K>],
+        mut visit: impl FnMut(&Gaussian<K>, Real<K>),
+    ) -> Result<(), Stop> {
+        self.admit(at)?;
+        one_per_time(at, residuals)?;
+        if !is_full(at) {
+            return self.each(at, residuals, visit);
+        }
+        let c = self.start(residuals, &mut visit);
+        let law = Gaussian::new(self.sigma2);
+        errors(&c, residuals, |e| visit(&law, e));
+        Ok(())
+    }
+
     /// The first k residuals on a full grid, with the predictors of lower
     /// order; returns the coefficients of the full one.
     fn start(
@@ -239,15 +258,19 @@ impl<K: Kind> Noise<K> for Ar<Real<K>> {
         residuals: &[Real<K>],
         visit: &mut dyn FnMut(Conditional<K>),
     ) -> Result<(), Stop> {
-        self.admit(at)?;
-        one_per_time(at, residuals)?;
-        if !is_full(at) {
-            return self.each(at, residuals, |law, e| visit(law.at(e)));
-        }
-        let c = self.start(residuals, |law, e| visit(law.at(e)));
-        let law = Gaussian::new(self.sigma2);
-        errors(&c, residuals, |e| visit(law.at(e)));
-        Ok(())
+        self.innovated(at, residuals, |law, e| visit(law.at(e)))
+    }
+
+    fn inform(
+        &self,
+        at: &Grid,
+        residuals: &[Real<K>],
+        hear: &mut dyn FnMut(&Real<K>),
+    ) -> Result<Real<K>, Stop> {
+        let mut total = Real::new(0.0);
+        let add = |law: &Gaussian<K>, e| total += law.inform(e, hear);
+        self.innovated(at, residuals, add)?;
+        Ok(total)
     }
 
     fn log_likelihood(

@@ -7,13 +7,15 @@
 
 mod even;
 mod kalman;
+mod likelihood;
 mod state;
 
 use rand_distr::{Distribution, StandardNormal, StudentT};
 
 use self::even::Even;
 use self::kalman::Kalman;
-use self::state::{Expected, Follows};
+use self::likelihood::LogLikelihood;
+use self::state::Follows;
 use super::gaussian::Gaussian;
 use super::like::noise_like;
 use super::part::{Lapse, MOST_STATES, Part, Whole};
@@ -23,7 +25,6 @@ use super::{
 };
 use crate::block::Sum;
 use crate::error::Stop;
-use crate::prior::LN_SQRT_2PI;
 use crate::scalar::{Kind, Real};
 use crate::seed::Rng;
 
@@ -34,43 +35,13 @@ enum Residuals<'r, K: Kind> {
 }
 
 /// The prediction error of a value over its size.
-struct Innovation<K: Kind> {
+struct Innovation<'f, K: Kind> {
     error: Real<K>,
-    /// Its variance, and one over that.
-    variance: Real<K>,
-    precision: Real<K>,
+    variance: &'f Real<K>,
     /// Whether that is the variance of the value before.
     is_same: bool,
     /// The logarithm of the value's size.
     log_size: Option<Real<K>>,
-}
-
-/// The sum of logarithms, by that of the product as far as a number holds it.
-struct LogSum<K: Kind> {
-    sum: Real<K>,
-    product: Real<K>,
-}
-
-impl<K: Kind> LogSum<K> {
-    fn new() -> Self {
-        Self { sum: Real::new(0.0), product: Real::new(1.0) }
-    }
-
-    #[inline(always)]
-    fn add(&mut self, x: Real<K>) {
-        // Of either as far from 1 as this the product is a number.
-        const FAR: f64 = 1e140;
-        let far = |x: Real<K>| !(1.0 / FAR..=FAR).contains(&x.value());
-        if far(x) || far(self.product) {
-            self.sum += self.product.ln();
-            self.product = Real::new(1.0);
-        }
-        self.product *= x;
-    }
-
-    fn total(self) -> Real<K> {
-        self.sum + self.product.ln()
-    }
 }
 
 impl<K: Kind> Whole<'_, K> {
@@ -79,7 +50,7 @@ impl<K: Kind> Whole<'_, K> {
         &self,
         at: &Grid,
         residuals: Residuals<'_, K>,
-        visit: impl FnMut(&Innovation<K>),
+        visit: impl FnMut(&Innovation<'_, K>),
     ) -> Result<(), Stop> {
         self.admit(at)?;
         let is_even = *at.spacing() == Spacing::Regular
@@ -99,7 +70,7 @@ impl<K: Kind> Whole<'_, K> {
         &self,
         at: &Grid,
         residuals: Residuals<'_, K>,
-        visit: &mut dyn FnMut(&Innovation<K>),
+        visit: &mut dyn FnMut(&Innovation<'_, K>),
     ) -> Result<(), Stop> {
         self.each(at, residuals, visit)
     }
@@ -110,7 +81,7 @@ impl<K: Kind> Whole<'_, K> {
         at: &Grid,
         is_even: bool,
         residuals: Residuals<'_, K>,
-        visit: impl FnMut(&Innovation<K>),
+        visit: impl FnMut(&Innovation<'_, K>),
     ) -> Result<(), Stop> {
         if is_even {
             let lapse = Lapse { seconds: at.step(), steps: 1.0 };
@@ -128,25 +99,31 @@ impl<K: Kind> Whole<'_, K> {
         at: &Grid,
         mut filter: impl Follows<K>,
         mut residuals: Residuals<'_, K>,
-        mut visit: impl FnMut(&Innovation<K>),
+        mut visit: impl FnMut(&Innovation<'_, K>),
     ) -> Result<(), Stop> {
         let errors = at.standard_errors();
         let white = self.white();
-        let mut precision = Real::new(f64::NAN);
+        let mut own = white;
         for i in 0..at.len() {
             let log_size = self.log_size(at, i);
-            let over = log_size.map(|log| (-log).exp());
-            let known = errors.map_or(0.0, |s| s[i] * s[i]);
-            let own = white + over.map_or(known.into(), |o| o * o * known);
-            let expected = filter.expect(Lapse::before(at, i), own);
-            let Expected { mean, variance, is_same } = expected;
-            if variance <= 0.0 || variance.value().is_nan() {
+            // A number in any case: a product with what was never written,
+            // taken ahead of the question whether it is asked for, is slow.
+            let over = log_size.map_or(1.0.into(), |log| (-log).exp());
+            if let Some(errors) = errors {
+                let known = errors[i] * errors[i];
+                own = white + over * over * known;
+            }
+            let is_same = filter.expect(Lapse::before(at, i), &own);
+            let variance = filter.variance();
+            if *variance <= 0.0 || variance.value().is_nan() {
                 return Err(Stop::Reject("a value has no error of its own"));
             }
+            let mean = filter.mean();
             let error = match &mut residuals {
-                Residuals::Seen(all) => {
-                    over.map_or(all[i], |over| all[i] * over) - mean
+                Residuals::Seen(all) if log_size.is_some() => {
+                    all[i] * over - mean
                 }
+                Residuals::Seen(all) => all[i] - mean,
                 Residuals::Drawn(rng, drawn) => {
                     let error = variance.value().sqrt() * self.deviate(rng)?;
                     let size = log_size.map_or(1.0, |log| log.value().exp());
@@ -154,13 +131,9 @@ impl<K: Kind> Whole<'_, K> {
                     Real::new(error)
                 }
             };
-            if !is_same {
-                precision = 1.0 / variance;
-            }
-            let next =
-                Innovation { error, variance, precision, is_same, log_size };
+            let next = Innovation { error, variance, is_same, log_size };
             visit(&next);
-            filter.learn(error, precision);
+            filter.learn(&next.error);
         }
         Ok(())
     }
@@ -194,18 +167,18 @@ impl<K: Kind> Noise<K> for Whole<'_, K> {
             let mut law = Gaussian::new(Real::new(1.0));
             return self.shown(at, seen, &mut |next| {
                 if !next.is_same {
-                    law = Gaussian::new(next.variance);
+                    law = Gaussian::new(*next.variance);
                 }
                 visit(law.sized(next.error, next.log_size));
             });
         };
-        let (peak, known) = (log_peak(nu), Known::of(nu.value()));
+        let peak = log_peak(nu);
         let mut law = Law::new(nu, peak, Real::new(1.0));
         self.shown(at, seen, &mut |next| {
             if !next.is_same {
-                law = Law::new(nu, peak, next.variance);
+                law = Law::new(nu, peak, *next.variance);
             }
-            visit(law.at(next.error, next.log_size, &known));
+            visit(law.at(next.error, next.log_size));
         })
     }
 
@@ -215,30 +188,32 @@ impl<K: Kind> Noise<K> for Whole<'_, K> {
         residuals: &[Real<K>],
     ) -> Result<Real<K>, Stop> {
         one_per_time(at, residuals)?;
-        let mut total = Real::new(0.0);
-        let (mut squares, mut logs) = (total, LogSum::new());
-        // One plus each square over nu, where there are tails.
-        let mut tails = LogSum::new();
-        let over = self.tails().map(|nu| 1.0 / nu);
-        self.each(at, Residuals::Seen(residuals), |next| {
-            let square = next.error * next.error * next.precision;
-            match over {
-                None => squares += square,
-                Some(over) => tails.add(square * over + 1.0),
+        let mut total = LogLikelihood::new(self.tails());
+        let seen = Residuals::Seen(residuals);
+        self.each(at, seen, |next| total.add(next))?;
+        Ok(total.total())
+    }
+
+    fn inform(
+        &self,
+        at: &Grid,
+        residuals: &[Real<K>],
+        hear: &mut dyn FnMut(&Real<K>),
+    ) -> Result<Real<K>, Stop> {
+        one_per_time(at, residuals)?;
+        let mut total = LogLikelihood::new(self.tails());
+        let mut scale = Scale::new(self.tails());
+        self.shown(at, Residuals::Seen(residuals), &mut |next| {
+            total.add(next);
+            if !next.is_same {
+                scale.change(next.variance);
             }
-            logs.add(next.variance);
-            if let Some(log_size) = next.log_size {
-                total -= log_size;
-            }
+            scale.inform(next, hear);
         })?;
-        total -= 0.5 * logs.total();
-        let n = at.len() as f64;
-        Ok(match self.tails() {
-            None => total - 0.5 * squares - LN_SQRT_2PI * n,
-            Some(nu) => {
-                total - 0.5 * (nu + 1.0) * tails.total() + log_peak(nu) * n
-            }
-        })
+        if let Some(known) = &scale.known {
+            hear(&known.shape(at.len()));
+        }
+        Ok(total.total())
     }
 
     fn draw(&self, at: &Grid, rng: &mut Rng) -> Result<Vec<f64>, Stop> {
@@ -251,6 +226,58 @@ impl<K: Kind> Noise<K> for Whole<'_, K> {
         match self.tails() {
             None => deviate,
             Some(nu) => normal_score(deviate, nu.value()),
+        }
+    }
+}
+
+/// What values of one variance tell of the parameters.
+struct Scale<K: Kind> {
+    /// What is known of tails, where there are any.
+    known: Option<Known<K>>,
+    inverse_width: f64,
+    precision: f64,
+    /// What each tells of its size.
+    size: Real<K>,
+}
+
+impl<K: Kind> Scale<K> {
+    fn new(nu: Option<Real<K>>) -> Self {
+        let size = Real::new(0.0);
+        let known = nu.map(Known::of);
+        Self { known, inverse_width: 1.0, precision: 1.0, size }
+    }
+
+    fn change(&mut self, variance: &Real<K>) {
+        self.precision = 1.0 / variance.value();
+        self.inverse_width = self.precision.sqrt();
+        let log_width = 0.5 * variance.ln();
+        let known = self.known.as_ref();
+        self.size = known.map_or(log_width, |known| known.size(log_width));
+    }
+
+    #[inline(always)]
+    fn inform(
+        &self,
+        next: &Innovation<'_, K>,
+        hear: &mut dyn FnMut(&Real<K>),
+    ) {
+        let (error, by) = (&next.error, self.inverse_width);
+        let per_size = match &self.known {
+            None => {
+                // The derivatives of e/sqrt(S).
+                let bend = -0.5 * error.value() * by * self.precision;
+                let terms = [(error, by), (next.variance, bend)];
+                hear(&Real::combine(error.value() * by, terms));
+                1.0
+            }
+            Some(known) => {
+                hear(&known.place(error, by));
+                known.size
+            }
+        };
+        match &next.log_size {
+            None => hear(&self.size),
+            Some(log_size) => hear(&(self.size + *log_size * per_size)),
         }
     }
 }

@@ -11,23 +11,42 @@ pub(crate) struct Gaussian<K: Kind> {
     constant: Real<K>,
     half_precision: Real<K>,
     inverse_sd: Real<K>,
+    log_sd: Real<K>,
 }
 
 impl<K: Kind> Gaussian<K> {
     #[inline(always)]
     pub(crate) fn new(variance: Real<K>) -> Self {
+        let log_sd = 0.5 * variance.ln();
         Self {
-            constant: -0.5 * variance.ln() - LN_SQRT_2PI,
+            constant: -log_sd - LN_SQRT_2PI,
             half_precision: 0.5 / variance,
             inverse_sd: 1.0 / variance.sqrt(),
+            log_sd,
         }
+    }
+
+    #[inline(always)]
+    fn log_density(&self, r: Real<K>) -> Real<K> {
+        self.constant - r * r * self.half_precision
     }
 
     /// One value.
     #[inline(always)]
     pub(crate) fn at(&self, r: Real<K>) -> Conditional<K> {
-        let log_density = self.constant - r * r * self.half_precision;
-        Conditional::new(log_density, r * self.inverse_sd)
+        Conditional::new(self.log_density(r), r * self.inverse_sd)
+    }
+
+    /// Its log density, and what it tells of its place and its size.
+    #[inline(always)]
+    pub(crate) fn inform(
+        &self,
+        r: Real<K>,
+        hear: &mut dyn FnMut(&Real<K>),
+    ) -> Real<K> {
+        hear(&(r * self.inverse_sd));
+        hear(&self.log_sd);
+        self.log_density(r)
     }
 
     /// One value over its size.
@@ -40,7 +59,6 @@ impl<K: Kind> Gaussian<K> {
         let mut value = self.at(r);
         if let Some(log_size) = log_size {
             value.log_density -= log_size;
-            value.informing.size += log_size;
         }
         value
     }

@@ -45,6 +45,23 @@ impl<K: Kind> Iid<Real<K>> {
             Err(Stop::Reject("the variance sigma2 is not positive"))
         }
     }
+
+    /// Visits each residual with its law.
+    #[inline(always)]
+    fn each(
+        &self,
+        at: &Grid,
+        residuals: &[Real<K>],
+        mut visit: impl FnMut(&Gaussian<K>, Real<K>),
+    ) {
+        let Some(errors) = at.standard_errors() else {
+            let law = Gaussian::new(self.sigma2);
+            return residuals.iter().for_each(|&r| visit(&law, r));
+        };
+        for (&r, s) in residuals.iter().zip(errors) {
+            visit(&Gaussian::new(self.sigma2 + s * s), r);
+        }
+    }
 }
 
 impl<K: Kind> Noise<K> for Iid<Real<K>> {
@@ -60,18 +77,21 @@ impl<K: Kind> Noise<K> for Iid<Real<K>> {
     ) -> Result<(), Stop> {
         self.admit()?;
         one_per_time(at, residuals)?;
-        match at.standard_errors() {
-            None => {
-                let law = Gaussian::new(self.sigma2);
-                residuals.iter().for_each(|&r| visit(law.at(r)));
-            }
-            Some(errors) => {
-                for (&r, s) in residuals.iter().zip(errors) {
-                    visit(Gaussian::new(self.sigma2 + s * s).at(r));
-                }
-            }
-        }
+        self.each(at, residuals, |law, r| visit(law.at(r)));
         Ok(())
+    }
+
+    fn inform(
+        &self,
+        at: &Grid,
+        residuals: &[Real<K>],
+        hear: &mut dyn FnMut(&Real<K>),
+    ) -> Result<Real<K>, Stop> {
+        self.admit()?;
+        one_per_time(at, residuals)?;
+        let mut total = Real::new(0.0);
+        self.each(at, residuals, |law, r| total += law.inform(r, hear));
+        Ok(total)
     }
 
     fn log_likelihood(

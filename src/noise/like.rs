@@ -41,6 +41,15 @@ macro_rules! noise_like {
                 $inner.log_likelihood(at, residuals)
             }
 
+            fn inform(
+                &$self,
+                at: &$crate::noise::Grid,
+                residuals: &[$crate::Real<K>],
+                hear: &mut dyn FnMut(&$crate::Real<K>),
+            ) -> ::core::result::Result<$crate::Real<K>, $crate::Stop> {
+                $inner.inform(at, residuals, hear)
+            }
+
             #[inline]
             fn width(
                 &$self,

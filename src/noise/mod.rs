@@ -62,29 +62,13 @@ pub struct Conditional<K: Kind> {
     /// The innovation over its scale, as the noise's own law sees it;
     /// [`Noise::standardise`] makes it a standard normal deviate.
     pub deviate: Real<K>,
-    pub(crate) informing: Informing<K>,
-}
-
-/// What a value tells of the parameters: numbers whose derivatives, each times
-/// itself, add up to about its Fisher information.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Informing<K: Kind> {
-    /// Of the innovation's place.
-    pub(crate) place: Real<K>,
-    /// Of its size.
-    pub(crate) size: Real<K>,
-    /// Of what else its law has.
-    pub(crate) shape: Option<Real<K>>,
 }
 
 impl<K: Kind> Conditional<K> {
-    /// A residual whose law is normal in the deviate d, or about so: with its
-    /// scale s, ln p = -d^2/2 - ln s and a constant.
+    /// A residual with its log density and its deviate.
     #[inline(always)]
     pub fn new(log_density: Real<K>, deviate: Real<K>) -> Self {
-        let size = -log_density - 0.5 * deviate * deviate;
-        let informing = Informing { place: deviate, size, shape: None };
-        Self { log_density, deviate, informing }
+        Self { log_density, deviate }
     }
 }
 
@@ -132,6 +116,32 @@ pub trait Noise<K: Kind> {
     ) -> Result<Real<K>, Stop> {
         let mut total = Real::new(0.0);
         self.walk(at, residuals, &mut |value| total += value.log_density)?;
+        Ok(total)
+    }
+
+    /// The log likelihood, while `hear` is told numbers whose derivatives,
+    /// each times itself, add up to about the Fisher information of the
+    /// residuals: as many of them whatever the parameters.
+    ///
+    /// As it stands, of innovations whose law is normal in the deviate d, or
+    /// about so: with its scale s, ln p = -d^2/2 - ln s and a constant, and
+    /// what informs is d and ln s.
+    ///
+    /// # Errors
+    /// Those of [`Noise::walk`].
+    fn inform(
+        &self,
+        at: &Grid,
+        residuals: &[Real<K>],
+        hear: &mut dyn FnMut(&Real<K>),
+    ) -> Result<Real<K>, Stop> {
+        let mut total = Real::new(0.0);
+        self.walk(at, residuals, &mut |value| {
+            let Conditional { log_density, deviate } = value;
+            hear(&deviate);
+            hear(&(-log_density - 0.5 * deviate * deviate));
+            total += log_density;
+        })?;
         Ok(total)
     }
 

@@ -4,7 +4,7 @@ use rand_distr::{Distribution, StudentT};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 use statrs::function::gamma::{digamma, ln_gamma};
 
-use super::{Conditional, Grid, Informing, Noise, is_positive, one_per_time};
+use super::{Conditional, Grid, Noise, is_positive, one_per_time};
 use crate::block::{Block, Field};
 use crate::error::Stop;
 use crate::scalar::{Kind, Real, polynomial};
@@ -94,8 +94,24 @@ impl<K: Kind> Noise<K> for Student<Real<K>> {
         residuals: &[Real<K>],
         visit: &mut dyn FnMut(Conditional<K>),
     ) -> Result<(), Stop> {
-        let known = Known::of(self.dof.value());
-        self.each(at, residuals, |law, r| visit(law.at(r, None, &known)))
+        self.each(at, residuals, |law, r| visit(law.at(r, None)))
+    }
+
+    fn inform(
+        &self,
+        at: &Grid,
+        residuals: &[Real<K>],
+        hear: &mut dyn FnMut(&Real<K>),
+    ) -> Result<Real<K>, Stop> {
+        let known = Known::of(self.dof);
+        let mut total = Real::new(0.0);
+        self.each(at, residuals, |law, r| {
+            hear(&known.place(&r, law.inverse_width.value()));
+            hear(&known.size(law.log_width));
+            total += law.log_density(r);
+        })?;
+        hear(&known.shape(residuals.len()));
+        Ok(total)
     }
 
     fn log_likelihood(
@@ -149,7 +165,6 @@ pub(super) fn normal_score(deviate: f64, dof: f64) -> f64 {
 /// A Student density of mean 0 with its constants worked out once.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Law<K: Kind> {
-    dof: Real<K>,
     constant: Real<K>,
     /// ln w.
     log_width: Real<K>,
@@ -168,7 +183,6 @@ impl<K: Kind> Law<K> {
     ) -> Self {
         let log_width = 0.5 * square.ln();
         Self {
-            dof,
             constant: log_peak - log_width,
             log_width,
             power: 0.5 * (dof + 1.0),
@@ -178,29 +192,14 @@ impl<K: Kind> Law<K> {
     }
 
     /// One value, its size on top of its width where that changes.
-    ///
-    /// A value far out tells the less of its place the farther out it is: in
-    /// proportion to (dof + 1)/(dof + d^2), which is 1 on average.
     #[inline(always)]
     pub(super) fn at(
         &self,
         r: Real<K>,
         log_size: Option<Real<K>>,
-        known: &Known,
     ) -> Conditional<K> {
-        let deviate = r * self.inverse_width;
-        let (d, dof) = (deviate.value(), self.dof.value());
-        let near = known.place * (dof + 1.0) / (dof + d * d);
-        let log_size = log_size.unwrap_or_default();
-        let log_width = self.log_width + log_size;
-        let informing = Informing {
-            // What is left of the derivative is that of r over w.
-            place: (deviate + self.log_width * d) * near.sqrt(),
-            size: log_width * known.size + self.dof * known.both,
-            shape: Some(self.dof * known.dof),
-        };
-        let log_density = self.log_density(r) - log_size;
-        Conditional { log_density, deviate, informing }
+        let log_density = self.log_density(r) - log_size.unwrap_or_default();
+        Conditional::new(log_density, r * self.inverse_width)
     }
 
     #[inline(always)]
@@ -209,25 +208,48 @@ impl<K: Kind> Law<K> {
     }
 }
 
-/// The Fisher information of one value of the Student law (Lange, Little and
-/// Taylor 1989, appendix): of its place in widths (dof + 1)/(dof + 3), of its
+/// The Fisher information of values of the Student law (Lange, Little and
+/// Taylor 1989, appendix): of the place in widths (dof + 1)/(dof + 3), of the
 /// log width 2 dof/(dof + 3), of both log width and dof
 /// -2/((dof + 1)(dof + 3)), and of dof; the last three as the factor L of
 /// L L'.
-pub(super) struct Known {
+pub(super) struct Known<K: Kind> {
+    dof: Real<K>,
     place: f64,
-    size: f64,
+    pub(super) size: f64,
     both: f64,
-    dof: f64,
+    shape: f64,
 }
 
-impl Known {
-    pub(super) fn of(dof: f64) -> Self {
+impl<K: Kind> Known<K> {
+    pub(super) fn of(nu: Real<K>) -> Self {
+        let dof = nu.value();
         let size = (2.0 * dof / (dof + 3.0)).sqrt();
         let both = -2.0 / ((dof + 1.0) * (dof + 3.0)) / size;
         let own = of_dof(dof) - both * both;
         let place = (dof + 1.0) / (dof + 3.0);
-        Self { place, size, both, dof: own.max(0.0).sqrt() }
+        Self { dof: nu, place, size, both, shape: own.max(0.0).sqrt() }
+    }
+
+    /// What a value tells of its place, as derivatives alone. One far out
+    /// tells the less the farther out it is: in proportion to
+    /// (dof + 1)/(dof + d^2), which is 1 on average.
+    #[inline(always)]
+    pub(super) fn place(&self, r: &Real<K>, inverse_width: f64) -> Real<K> {
+        let (d, dof) = (r.value() * inverse_width, self.dof.value());
+        let near = self.place * (dof + 1.0) / (dof + d * d);
+        Real::combine(0.0, [(r, inverse_width * near.sqrt())])
+    }
+
+    /// What it tells of its log width.
+    #[inline(always)]
+    pub(super) fn size(&self, log_width: Real<K>) -> Real<K> {
+        log_width * self.size + self.dof * self.both
+    }
+
+    /// What so many values tell of the degrees of freedom beyond that.
+    pub(super) fn shape(&self, count: usize) -> Real<K> {
+        self.dof * (self.shape * (count as f64).sqrt())
     }
 }
 
@@ -292,12 +314,17 @@ mod tests {
         let square = (2.0 * log_width).exp();
         let law = Law::new(nu, log_peak(nu), square);
         let r = angle.tan() * 0.3_f64.exp() - D::variable(0.0, 0);
-        let value = law.at(r, None, &Known::of(dof));
-        let Informing { place, size, shape } = value.informing;
+        let log_density = law.log_density(r);
+        let known = Known::of(nu);
+        let told = [
+            known.place(&r, law.inverse_width.value()),
+            known.size(law.log_width),
+            known.shape(1),
+        ];
         let of = |x: D| [x.partial(0), x.partial(1), x.partial(2)];
         let stretch = 0.3_f64.exp() / angle.cos().powi(2);
-        let p = value.log_density.value().exp() * stretch;
-        (p, of(value.log_density), [of(place), of(size), of(shape.unwrap())])
+        let p = log_density.value().exp() * stretch;
+        (p, of(log_density), told.map(of))
     }
 
     #[test]

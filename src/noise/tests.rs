@@ -7,6 +7,7 @@ use statrs::distribution::{
 };
 
 mod double;
+mod informing;
 mod sums;
 
 use self::double::Double;

@@ -45,6 +45,16 @@ pub trait Kind: Copy + Debug + Default + Send + Sync + 'static {
         value: f64,
         terms: [(&Self::Repr, f64); M],
     ) -> Self::Repr;
+    /// Adds such a function to a number, whose value it then is.
+    #[inline(always)]
+    fn accumulate<const M: usize>(
+        sum: &mut Self::Repr,
+        value: f64,
+        terms: [(&Self::Repr, f64); M],
+    ) {
+        let more = Self::combine(value, terms);
+        *sum = Self::chain2(sum, &more, value, 1.0, 1.0);
+    }
 }
 
 /// Writes something, by a macro that takes kinds, for each that models are
@@ -191,13 +201,22 @@ impl<const N: usize> Kind for Grad<N> {
         value: f64,
         terms: [(&Dual<N>, f64); M],
     ) -> Dual<N> {
-        let mut partials = [0.0; N];
-        for (i, p) in partials.iter_mut().enumerate() {
+        let mut sum = Self::constant(0.0);
+        Self::accumulate(&mut sum, value, terms);
+        sum
+    }
+    #[inline(always)]
+    fn accumulate<const M: usize>(
+        sum: &mut Dual<N>,
+        value: f64,
+        terms: [(&Dual<N>, f64); M],
+    ) {
+        sum.value = value;
+        for (i, p) in sum.partials.iter_mut().enumerate() {
             for (x, slope) in &terms {
                 *p = fused(*slope, x.partials[i], *p);
             }
         }
-        Dual { value, partials }
     }
 }
 

@@ -97,6 +97,26 @@ impl<K: Kind> Real<K> {
         Self(K::combine(value, terms))
     }
 
+    /// Adds a function of several numbers, each with the function's partial
+    /// derivative by it, to this one, whose value is then the one given.
+    #[inline(always)]
+    pub fn accumulate<const M: usize>(
+        &mut self,
+        value: f64,
+        terms: [(&Self, f64); M],
+    ) {
+        let terms = terms.map(|(x, slope)| (&x.0, slope));
+        K::accumulate(&mut self.0, value, terms);
+    }
+
+    /// Adds a product to it.
+    #[inline(always)]
+    pub fn add_product(&mut self, x: &Self, y: &Self) {
+        let (a, b) = (x.value(), y.value());
+        let value = fused(a, b, self.value());
+        self.accumulate(value, [(x, b), (y, a)]);
+    }
+
     /// Square root.
     #[inline(always)]
     pub fn sqrt(self) -> Self {

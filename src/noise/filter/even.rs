@@ -17,8 +17,7 @@
 //! and the mean moves to F x + g e / S with the prediction error e.
 
 use super::state::{
-    Expected, Follows, Matrix, Values, are_same, blocks, place, settles,
-    stationary, sum, times, values,
+    Follows, Motion, Values, are_same, settles, stationary, sum, values,
 };
 use crate::noise::part::{Lapse, Whole};
 use crate::scalar::{Kind, Real};
@@ -31,12 +30,14 @@ const SURE: usize = 2;
 pub(super) struct Even<K: Kind, const N: usize> {
     values: Values<N>,
     /// F.
-    matrix: Matrix<K, N>,
+    motion: Motion<K, N>,
     mean: [Real<K>; N],
     /// S.
     variance: Real<K>,
     /// g.
     gain: [Real<K>; N],
+    /// g / S.
+    scaled: [Real<K>; N],
     /// b.
     backward: [Real<K>; N],
     /// How many values in a row told no more than the one before.
@@ -47,34 +48,32 @@ impl<K: Kind, const N: usize> Even<K, N> {
     /// Before the first of values that are a lapse apart.
     pub(super) fn new(whole: &Whole<'_, K>, lapse: Lapse) -> Self {
         let values = values(whole);
-        let mut matrix = [[Real::new(0.0); N]; N];
-        for (first, memory) in blocks(whole) {
-            let over = memory.over(lapse).matrix;
-            place(&mut matrix, first, memory.states(), &over);
-        }
+        let (motion, _) = Motion::over(whole, lapse);
         let covariance = stationary::<K, N>(whole);
         let across = covariance.map(|row| sum(&values, &row));
-        let gain = times(&matrix, &across);
+        let gain = motion.times(&across);
         let variance = sum(&values, &across) + whole.white();
-        let (mean, backward, same) = ([Real::new(0.0); N], gain, 0);
-        Self { values, matrix, mean, variance, gain, backward, same }
+        let (zero, backward, same) = ([Real::new(0.0); N], gain, 0);
+        let (mean, scaled) = (zero, zero);
+        Self { values, motion, mean, variance, gain, scaled, backward, same }
     }
 
     /// What a value tells of how well the next will be known.
-    #[expect(clippy::needless_range_loop, reason = "two entries at once")]
     #[inline(always)]
-    fn reflect(&mut self, precision: Real<K>) {
+    fn reflect(&mut self) {
+        let precision = 1.0 / self.variance;
+        self.scaled = self.gain.map(|gain| gain * precision);
         let seen = sum(&self.values, &self.backward);
         let reflection = seen * precision;
-        let ahead = times(&self.matrix, &self.backward);
+        let ahead = self.motion.times(&self.backward);
         let variance = self.variance - reflection * seen;
         let mut same = settles::<K>() && are_same(variance, self.variance);
-        for i in 0..N {
-            let gain = self.gain[i];
-            let next = gain - reflection * ahead[i];
-            same = same && are_same(next, gain);
-            self.gain[i] = next;
-            self.backward[i] = ahead[i] - reflection * gain;
+        let pairs = self.gain.iter_mut().zip(&mut self.backward);
+        for ((gain, backward), ahead) in pairs.zip(ahead) {
+            let next = *gain - reflection * ahead;
+            *backward = ahead - reflection * *gain;
+            same = same && are_same(next, *gain);
+            *gain = next;
         }
         self.variance = variance;
         self.same = if same { self.same + 1 } else { 0 };
@@ -83,21 +82,29 @@ impl<K: Kind, const N: usize> Even<K, N> {
 
 impl<K: Kind, const N: usize> Follows<K> for Even<K, N> {
     #[inline(always)]
-    fn expect(&mut self, _: Lapse, _: Real<K>) -> Expected<K> {
-        let mean = sum(&self.values, &self.mean);
-        let is_same = self.same >= SURE;
-        Expected { mean, variance: self.variance, is_same }
+    fn expect(&mut self, _: Lapse, _: &Real<K>) -> bool {
+        self.same >= SURE
     }
 
     #[inline(always)]
-    fn learn(&mut self, error: Real<K>, precision: Real<K>) {
-        let scaled = error * precision;
-        self.mean = times(&self.matrix, &self.mean);
-        for (mean, &gain) in self.mean.iter_mut().zip(&self.gain) {
-            *mean += gain * scaled;
-        }
+    fn mean(&self) -> Real<K> {
+        sum(&self.values, &self.mean)
+    }
+
+    #[inline(always)]
+    fn variance(&self) -> &Real<K> {
+        &self.variance
+    }
+
+    #[inline(always)]
+    fn learn(&mut self, error: &Real<K>) {
         if self.same < SURE {
-            self.reflect(precision);
+            self.reflect();
         }
+        let mut mean = self.motion.times(&self.mean);
+        for (mean, gain) in mean.iter_mut().zip(&self.scaled) {
+            mean.add_product(gain, error);
+        }
+        self.mean = mean;
     }
 }

@@ -2,8 +2,8 @@
 //! so far (Kalman 1960).
 
 use super::state::{
-    Expected, Follows, Matrix, Values, are_same, blocks, dot, place, settles,
-    stationary, sum, times, values,
+    Follows, Matrix, Motion, Values, are_same, settles, stationary, sum,
+    values,
 };
 use crate::noise::part::{Lapse, Whole};
 use crate::scalar::{Kind, Real};
@@ -14,12 +14,12 @@ pub(super) struct Kalman<'w, 'a, K: Kind, const N: usize> {
     values: Values<N>,
     mean: [Real<K>; N],
     covariance: Matrix<K, N>,
-    /// How the state moves over the last lapse asked for.
-    lapse: Option<Lapse>,
-    matrix: Matrix<K, N>,
-    noise: Matrix<K, N>,
-    /// How well the last value was known beforehand.
-    last: Option<Foreseen<K, N>>,
+    /// How the state moves over the last lapse asked for, F and Q.
+    over: Option<(Lapse, Motion<K, N>, Matrix<K, N>)>,
+    /// How well the next value is known beforehand.
+    next: Foreseen<K, N>,
+    /// The covariance of the state with it over its variance.
+    gain: [Real<K>; N],
     /// The variance of the last value's own errors, where nothing changes any
     /// more from value to value as long as that stays.
     steady: Option<Real<K>>,
@@ -47,17 +47,17 @@ impl<K: Kind, const N: usize> Foreseen<K, N> {
 impl<'w, 'a, K: Kind, const N: usize> Kalman<'w, 'a, K, N> {
     /// Before any value.
     pub(super) fn new(whole: &'w Whole<'a, K>) -> Self {
-        let values = values(whole);
-        let zero = [[Real::new(0.0); N]; N];
+        let zero = [Real::new(0.0); N];
+        // Of a variance that no value has.
+        let nothing = Real::new(f64::NAN);
         Self {
             whole,
-            mean: [Real::new(0.0); N],
+            mean: zero,
             covariance: stationary(whole),
-            values,
-            lapse: None,
-            matrix: zero,
-            noise: zero,
-            last: None,
+            values: values(whole),
+            over: None,
+            next: Foreseen { variance: nothing, across: zero },
+            gain: zero,
             steady: None,
             is_steady: false,
         }
@@ -65,46 +65,52 @@ impl<'w, 'a, K: Kind, const N: usize> Kalman<'w, 'a, K, N> {
 
     /// Lets the time before a value pass: x moves to F x, its covariance P to
     /// F P F' + Q.
-    #[expect(clippy::needless_range_loop, reason = "two entries at once")]
     #[inline]
     fn advance(&mut self, lapse: Lapse) {
         if lapse.steps == 0.0 {
             return;
         }
-        if self.lapse != Some(lapse) {
-            self.look_up(lapse);
+        if self.over.as_ref().is_none_or(|(of, ..)| *of != lapse) {
+            let (motion, noise) = Motion::over(self.whole, lapse);
+            self.over = Some((lapse, motion, noise));
         }
-        let f = &self.matrix;
-        self.mean = times(f, &self.mean);
-        let ahead = f.map(|row| times(&self.covariance, &row));
-        for i in 0..N {
-            for j in 0..=i {
-                let sum = self.noise[i][j] + dot(&f[i], &ahead[j]);
-                self.covariance[i][j] = sum;
-                self.covariance[j][i] = sum;
+        let Some((_, motion, noise)) = &self.over else { return };
+        self.mean = motion.times(&self.mean);
+        // P F', whose columns F moves.
+        let ahead = self.covariance.map(|row| motion.times(&row));
+        for j in 0..N {
+            let column = ahead.map(|row| row[j]);
+            for (i, noise) in noise.iter().enumerate().skip(j) {
+                let moved = motion.row(i, &column) + noise[j];
+                self.covariance[i][j] = moved;
+                self.covariance[j][i] = moved;
             }
         }
-    }
-
-    #[cold]
-    fn look_up(&mut self, lapse: Lapse) {
-        for (first, memory) in blocks(self.whole) {
-            let over = memory.over(lapse);
-            let states = memory.states();
-            place(&mut self.matrix, first, states, &over.matrix);
-            place(&mut self.noise, first, states, &over.noise);
-        }
-        self.lapse = Some(lapse);
     }
 
     /// How well the next value is known, with errors of such a variance of its
     /// own.
     #[inline]
-    fn foreseen(&self, own: Real<K>) -> Foreseen<K, N> {
+    fn foreseen(&self, own: &Real<K>) -> Foreseen<K, N> {
         let across =
             std::array::from_fn(|i| sum(&self.values, &self.covariance[i]));
         let variance = sum(&self.values, &across) + own;
         Foreseen { variance, across }
+    }
+
+    /// What a value tells of the state.
+    #[inline]
+    fn narrow(&mut self) {
+        let Foreseen { variance, across } = self.next;
+        let precision = 1.0 / variance;
+        self.gain = across.map(|across| across * precision);
+        for i in 0..N {
+            for (j, &across) in across.iter().enumerate().take(i + 1) {
+                let less = self.covariance[i][j] - self.gain[i] * across;
+                self.covariance[i][j] = less;
+                self.covariance[j][i] = less;
+            }
+        }
     }
 }
 
@@ -113,44 +119,42 @@ impl<K: Kind, const N: usize> Follows<K> for Kalman<'_, '_, K, N> {
     /// from value to value (the filter is steady, Harvey 1989, section 3.3);
     /// then only its mean goes on.
     #[inline]
-    fn expect(&mut self, lapse: Lapse, own: Real<K>) -> Expected<K> {
-        let again = self.lapse == Some(lapse);
-        if let (true, Some(last), Some(of)) = (again, self.last, self.steady)
+    fn expect(&mut self, lapse: Lapse, own: &Real<K>) -> bool {
+        let again = self.over.as_ref().filter(|(of, ..)| *of == lapse);
+        if let (Some((_, motion, _)), Some(of)) = (again, self.steady)
             && of.value() == own.value()
         {
             self.is_steady = true;
-            self.mean = times(&self.matrix, &self.mean);
-            let mean = sum(&self.values, &self.mean);
-            return Expected { mean, variance: last.variance, is_same: true };
+            self.mean = motion.times(&self.mean);
+            return true;
         }
+        let again = again.is_some();
         self.is_steady = false;
         self.advance(lapse);
         let next = self.foreseen(own);
-        let same = |last: Foreseen<K, N>| next.is_same(&last);
-        let settled = settles::<K>() && again && self.last.is_some_and(same);
-        self.steady = settled.then_some(own);
-        self.last = Some(next);
-        let mean = sum(&self.values, &self.mean);
-        Expected { mean, variance: next.variance, is_same: false }
+        let settled = settles::<K>() && again && next.is_same(&self.next);
+        self.steady = settled.then_some(*own);
+        self.next = next;
+        false
     }
 
-    #[expect(clippy::needless_range_loop, reason = "two entries at once")]
     #[inline]
-    fn learn(&mut self, error: Real<K>, precision: Real<K>) {
-        let Some(Foreseen { across, .. }) = self.last else { return };
-        let gain = across.map(|across| across * precision);
-        for (mean, &gain) in self.mean.iter_mut().zip(&gain) {
-            *mean += gain * error;
+    fn mean(&self) -> Real<K> {
+        sum(&self.values, &self.mean)
+    }
+
+    #[inline]
+    fn variance(&self) -> &Real<K> {
+        &self.next.variance
+    }
+
+    #[inline]
+    fn learn(&mut self, error: &Real<K>) {
+        if !self.is_steady {
+            self.narrow();
         }
-        if self.is_steady {
-            return;
-        }
-        for i in 0..N {
-            for j in 0..=i {
-                let less = self.covariance[i][j] - gain[i] * across[j];
-                self.covariance[i][j] = less;
-                self.covariance[j][i] = less;
-            }
+        for (mean, gain) in self.mean.iter_mut().zip(&self.gain) {
+            mean.add_product(gain, error);
         }
     }
 }

@@ -6,22 +6,19 @@ use crate::scalar::{Kind, Real};
 /// Goes from value to value, and says of each what is expected of it given
 /// those before.
 pub(super) trait Follows<K: Kind> {
-    /// What is expected of the next value, after a lapse, with errors of such
-    /// a variance of its own.
-    fn expect(&mut self, lapse: Lapse, own: Real<K>) -> Expected<K>;
+    /// Goes on to the next value, after a lapse, with errors of such a
+    /// variance of its own; whether the variance expected of it is that of the
+    /// value before, but for round-off.
+    fn expect(&mut self, lapse: Lapse, own: &Real<K>) -> bool;
 
-    /// Takes it in: by how much it differs from that, and one over the
-    /// variance that was expected.
-    fn learn(&mut self, error: Real<K>, precision: Real<K>);
-}
+    /// The mean expected of it.
+    fn mean(&self) -> Real<K>;
 
-/// What a filter expects of a value.
-#[derive(Clone, Copy)]
-pub(super) struct Expected<K: Kind> {
-    pub(super) mean: Real<K>,
-    pub(super) variance: Real<K>,
-    /// Whether that is what it was for the value before, but for round-off.
-    pub(super) is_same: bool,
+    /// The variance expected of it.
+    fn variance(&self) -> &Real<K>;
+
+    /// Takes it in: by how much it differs from that mean.
+    fn learn(&mut self, error: &Real<K>);
 }
 
 pub(super) type Matrix<K, const N: usize> = [[Real<K>; N]; N];
@@ -75,6 +72,51 @@ pub(super) fn place<K: Kind, const N: usize>(
     }
 }
 
+/// How the state moves, and which of its entries are not 0 whatever the
+/// parameters: processes know nothing of each other, and a product by 0 costs
+/// as much as any along many directions.
+#[derive(Clone, Copy)]
+pub(super) struct Motion<K: Kind, const N: usize> {
+    matrix: Matrix<K, N>,
+    links: [[bool; N]; N],
+}
+
+impl<K: Kind, const N: usize> Motion<K, N> {
+    /// Over a lapse, with the covariance of what comes on the way.
+    pub(super) fn over(
+        whole: &Whole<'_, K>,
+        lapse: Lapse,
+    ) -> (Self, Matrix<K, N>) {
+        let mut matrix = [[Real::new(0.0); N]; N];
+        let mut noise = matrix;
+        for (first, memory) in blocks(whole) {
+            let (over, states) = (memory.over(lapse), memory.states());
+            place(&mut matrix, first, states, &over.matrix);
+            place(&mut noise, first, states, &over.noise);
+        }
+        let links = matrix.map(|row| row.map(|x| !x.is_constantly_zero()));
+        (Self { matrix, links }, noise)
+    }
+
+    /// One number of F x.
+    #[inline(always)]
+    pub(super) fn row(&self, i: usize, x: &[Real<K>; N]) -> Real<K> {
+        let mut sum = Real::new(0.0);
+        for (j, x) in x.iter().enumerate() {
+            if K::DIRECTIONS == 0 || self.links[i][j] {
+                sum.add_product(&self.matrix[i][j], x);
+            }
+        }
+        sum
+    }
+
+    /// F x.
+    #[inline(always)]
+    pub(super) fn times(&self, x: &[Real<K>; N]) -> [Real<K>; N] {
+        std::array::from_fn(|i| self.row(i, x))
+    }
+}
+
 /// The sum of the processes' values.
 #[inline(always)]
 pub(super) fn sum<K: Kind, const N: usize>(
@@ -87,27 +129,6 @@ pub(super) fn sum<K: Kind, const N: usize>(
         if values[i] {
             sum += x[i];
         }
-    }
-    sum
-}
-
-/// F x.
-#[inline(always)]
-pub(super) fn times<K: Kind, const N: usize>(
-    matrix: &Matrix<K, N>,
-    x: &[Real<K>; N],
-) -> [Real<K>; N] {
-    std::array::from_fn(|i| dot(&matrix[i], x))
-}
-
-#[inline(always)]
-pub(super) fn dot<K: Kind, const N: usize>(
-    x: &[Real<K>; N],
-    y: &[Real<K>; N],
-) -> Real<K> {
-    let mut sum = x[0] * y[0];
-    for i in 1..N {
-        sum += x[i] * y[i];
     }
     sum
 }
