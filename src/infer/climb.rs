@@ -400,6 +400,8 @@ mod tests {
     use std::cell::Cell;
 
     use super::*;
+    use crate::infer::fixture::Hills;
+    use crate::model::unit_directions;
 
     /// A ridge that is highest at its bend, 0, where its slope promises more.
     #[derive(Default)]
@@ -446,6 +448,23 @@ mod tests {
         assert_eq!(top.unwrap().0[0], 0.0);
         // At the start, and of the first try; a height of each other.
         assert_eq!((bend.slopes.get(), bend.heights.get()), (2, TRIES - 1));
+    }
+
+    #[test]
+    fn what_is_held_need_not_be_derived_along() {
+        let posterior = Posterior::new(&Hills).unwrap();
+        let (held, start) = ([1], [0.6, 1.5]);
+        let free = unit_directions(&[0], 2);
+        let top = |free| {
+            let landscape = Held { free, ..Held::new(&posterior, &held) };
+            climb_holding(&landscape, &start, 60).unwrap().unwrap()
+        };
+        let (all, few) = (top(None), top(Some(&free)));
+        assert_eq!((&few.line, few.height), (&all.line, all.height));
+        assert_eq!(few.line[1], 1.5);
+        assert_eq!(few.precision[(0, 0)], all.precision[(0, 0)]);
+        // Where x^2 is nearly 1; the prior has its peak there too.
+        assert!((few.line[0] - 1.0).abs() < 0.01, "{}", few.line[0]);
     }
 
     #[test]

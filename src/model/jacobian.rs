@@ -53,7 +53,11 @@ impl Jacobian {
         let column = &mut self.blocks[begin..begin + self.width];
         let parts = x.partials().chunks(BLOCK);
         for (block, part) in column[first / BLOCK..].iter_mut().zip(parts) {
-            block[..part.len()].copy_from_slice(part);
+            // A whole one by a few instructions, others by a call.
+            match part.try_into() {
+                Ok(whole) => *block = whole,
+                Err(_) => block[..part.len()].copy_from_slice(part),
+            }
         }
     }
 

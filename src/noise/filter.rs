@@ -8,6 +8,7 @@
 mod even;
 mod kalman;
 mod likelihood;
+mod scale;
 mod state;
 
 use rand_distr::{Distribution, StandardNormal, StudentT};
@@ -15,11 +16,12 @@ use rand_distr::{Distribution, StandardNormal, StudentT};
 use self::even::Even;
 use self::kalman::Kalman;
 use self::likelihood::LogLikelihood;
+use self::scale::Scale;
 use self::state::Follows;
 use super::gaussian::Gaussian;
 use super::like::noise_like;
 use super::part::{Lapse, MOST_STATES, Part, Whole};
-use super::student::{Known, Law, log_peak, normal_score};
+use super::student::{Law, log_peak, normal_score};
 use super::{
     Conditional, Grid, Matern32, Noise, Ou, Spacing, White, one_per_time,
 };
@@ -210,9 +212,7 @@ impl<K: Kind> Noise<K> for Whole<'_, K> {
             }
             scale.inform(next, hear);
         })?;
-        if let Some(known) = &scale.known {
-            hear(&known.shape(at.len()));
-        }
+        scale.inform_of_shape(at.len(), hear);
         Ok(total.total())
     }
 
@@ -226,58 +226,6 @@ impl<K: Kind> Noise<K> for Whole<'_, K> {
         match self.tails() {
             None => deviate,
             Some(nu) => normal_score(deviate, nu.value()),
-        }
-    }
-}
-
-/// What values of one variance tell of the parameters.
-struct Scale<K: Kind> {
-    /// What is known of tails, where there are any.
-    known: Option<Known<K>>,
-    inverse_width: f64,
-    precision: f64,
-    /// What each tells of its size.
-    size: Real<K>,
-}
-
-impl<K: Kind> Scale<K> {
-    fn new(nu: Option<Real<K>>) -> Self {
-        let size = Real::new(0.0);
-        let known = nu.map(Known::of);
-        Self { known, inverse_width: 1.0, precision: 1.0, size }
-    }
-
-    fn change(&mut self, variance: &Real<K>) {
-        self.precision = 1.0 / variance.value();
-        self.inverse_width = self.precision.sqrt();
-        let log_width = 0.5 * variance.ln();
-        let known = self.known.as_ref();
-        self.size = known.map_or(log_width, |known| known.size(log_width));
-    }
-
-    #[inline(always)]
-    fn inform(
-        &self,
-        next: &Innovation<'_, K>,
-        hear: &mut dyn FnMut(&Real<K>),
-    ) {
-        let (error, by) = (&next.error, self.inverse_width);
-        let per_size = match &self.known {
-            None => {
-                // The derivatives of e/sqrt(S).
-                let bend = -0.5 * error.value() * by * self.precision;
-                let terms = [(error, by), (next.variance, bend)];
-                hear(&Real::combine(error.value() * by, terms));
-                1.0
-            }
-            Some(known) => {
-                hear(&known.place(error, by));
-                known.size
-            }
-        };
-        match &next.log_size {
-            None => hear(&self.size),
-            Some(log_size) => hear(&(self.size + *log_size * per_size)),
         }
     }
 }
