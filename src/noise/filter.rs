@@ -6,6 +6,7 @@
 //! the number of values, for any times.
 
 mod even;
+mod innovation;
 mod kalman;
 mod likelihood;
 mod scale;
@@ -14,6 +15,7 @@ mod state;
 use rand_distr::{Distribution, StandardNormal, StudentT};
 
 use self::even::Even;
+use self::innovation::Innovation;
 use self::kalman::Kalman;
 use self::likelihood::LogLikelihood;
 use self::scale::Scale;
@@ -34,16 +36,6 @@ use crate::seed::Rng;
 enum Residuals<'r, K: Kind> {
     Seen(&'r [Real<K>]),
     Drawn(&'r mut Rng, &'r mut Vec<f64>),
-}
-
-/// The prediction error of a value over its size.
-struct Innovation<'f, K: Kind> {
-    error: Real<K>,
-    variance: &'f Real<K>,
-    /// Whether that is the variance of the value before.
-    is_same: bool,
-    /// The logarithm of the value's size.
-    log_size: Option<Real<K>>,
 }
 
 impl<K: Kind> Whole<'_, K> {

@@ -6,7 +6,7 @@
 //! by -w e/S, and with S by (w d^2 - 1)/(2 S): what is carried along many
 //! directions is one sum for both, and S only where it changes.
 
-use super::Innovation;
+use super::innovation::Innovation;
 use crate::noise::student::log_peak;
 use crate::prior::LN_SQRT_2PI;
 use crate::scalar::{Kind, Real};

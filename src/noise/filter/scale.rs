@@ -1,7 +1,7 @@
 //! What the values of a filter tell of the parameters: of the place e/sqrt(S)
 //! of a prediction error e of variance S, and of its size ln(S)/2.
 
-use super::Innovation;
+use super::innovation::Innovation;
 use crate::noise::student::Known;
 use crate::scalar::{Kind, Real};
 
