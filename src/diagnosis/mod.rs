@@ -14,7 +14,9 @@ mod locate;
 mod options;
 mod rate;
 mod tell;
+// The page is one of the forms they look at.
 #[cfg(test)]
+#[cfg(feature = "pages")]
 mod tests;
 mod together;
 

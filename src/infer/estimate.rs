@@ -153,6 +153,22 @@ mod tests {
     }
 
     #[test]
+    fn an_estimate_suits_what_is_asked_of_it() {
+        let of = |se: f64, does: bool| {
+            let (log, method) = (0.0, String::new());
+            let evidence = Some(Evidence { log, se, method });
+            let made = Inference { evidence, ..Inference::default() };
+            let estimate = Estimate { made, found: Vec::new(), does };
+            [Precision::Rough, Precision::Fair, Precision::Sharp]
+                .map(|precision| estimate.suits(precision))
+        };
+        assert_eq!(of(5.0, true), [true; 3]);
+        assert_eq!(of(0.2, false), [true, true, false]);
+        assert_eq!(of(0.4, false), [true, false, false]);
+        assert_eq!(of(f64::NAN, false), [true, false, false]);
+    }
+
+    #[test]
     fn as_many_draws_as_the_error_asks_for() {
         let final_draws = (1000, 6000);
         let schedule =

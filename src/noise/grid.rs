@@ -315,6 +315,14 @@ mod tests {
     }
 
     #[test]
+    fn shares_are_of_the_time_that_passes() {
+        let at = Grid::new(vec![5.0, 6.0, 9.0], None);
+        assert_eq!([0, 1, 2].map(|i| at.share(i)), [0.0, 0.25, 1.0]);
+        assert_eq!(Grid::new(vec![5.0], None).share(0), 0.5);
+        assert!(!at.is_empty() && Grid::new(Vec::new(), None).is_empty());
+    }
+
+    #[test]
     fn few_times_are_regular() {
         assert_eq!(spacing_of(&[]), Spacing::Regular);
         assert_eq!(spacing_of(&[4.0]), Spacing::Regular);

@@ -53,14 +53,18 @@ impl<K: Kind> Iid<Real<K>> {
         at: &Grid,
         residuals: &[Real<K>],
         mut visit: impl FnMut(&Gaussian<K>, Real<K>),
-    ) {
+    ) -> Result<(), Stop> {
+        self.admit()?;
+        one_per_time(at, residuals)?;
         let Some(errors) = at.standard_errors() else {
             let law = Gaussian::new(self.sigma2);
-            return residuals.iter().for_each(|&r| visit(&law, r));
+            residuals.iter().for_each(|&r| visit(&law, r));
+            return Ok(());
         };
         for (&r, s) in residuals.iter().zip(errors) {
             visit(&Gaussian::new(self.sigma2 + s * s), r);
         }
+        Ok(())
     }
 }
 
@@ -75,10 +79,7 @@ impl<K: Kind> Noise<K> for Iid<Real<K>> {
         residuals: &[Real<K>],
         visit: &mut dyn FnMut(Conditional<K>),
     ) -> Result<(), Stop> {
-        self.admit()?;
-        one_per_time(at, residuals)?;
-        self.each(at, residuals, |law, r| visit(law.at(r)));
-        Ok(())
+        self.each(at, residuals, |law, r| visit(law.at(r)))
     }
 
     fn inform(
@@ -87,10 +88,8 @@ impl<K: Kind> Noise<K> for Iid<Real<K>> {
         residuals: &[Real<K>],
         hear: &mut dyn FnMut(&Real<K>),
     ) -> Result<Real<K>, Stop> {
-        self.admit()?;
-        one_per_time(at, residuals)?;
         let mut total = Real::new(0.0);
-        self.each(at, residuals, |law, r| total += law.inform(r, hear));
+        self.each(at, residuals, |law, r| total += law.inform(r, hear))?;
         Ok(total)
     }
 

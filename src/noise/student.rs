@@ -255,6 +255,10 @@ impl<K: Kind> Known<K> {
 
 /// The Fisher information of the degrees of freedom.
 fn of_dof(dof: f64) -> f64 {
+    if dof <= 0.0 {
+        // There is no such law, and a noise of it is rejected.
+        return f64::NAN;
+    }
     if dof > 200.0 {
         // The difference of two large numbers; its first terms are within
         // 1e-3 of it.
@@ -325,6 +329,22 @@ mod tests {
         let stretch = 0.3_f64.exp() / angle.cos().powi(2);
         let p = log_density.value().exp() * stretch;
         (p, of(log_density), told.map(of))
+    }
+
+    #[test]
+    fn trigamma_is_pi_squared_over_six_at_one() {
+        let square = std::f64::consts::PI.powi(2);
+        let [half, one] = [square / 2.0, square / 6.0];
+        // Sums of 20 terms: their round-off.
+        assert!((trigamma(0.5) - half).abs() < 1e-14);
+        assert!((trigamma(1.0) - one).abs() < 1e-14);
+        let fifth = one - 1.0 - 1.0 / 4.0 - 1.0 / 9.0 - 1.0 / 16.0;
+        assert!((trigamma(5.0) - fifth).abs() < 1e-14);
+        // 1/x + 1/(2 x^2) + 1/(6 x^3) - 1/(30 x^5), all of it here.
+        let x = 100.0_f64;
+        let far = 1.0 / x + 0.5 / x.powi(2) + 1.0 / (6.0 * x.powi(3))
+            - 1.0 / (30.0 * x.powi(5));
+        assert!((trigamma(x) / far - 1.0).abs() < 1e-13);
     }
 
     #[test]

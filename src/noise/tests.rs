@@ -6,6 +6,7 @@ use statrs::distribution::{
     Continuous, ContinuousCDF, Normal as StatrsNormal, StudentsT,
 };
 
+mod defaults;
 mod double;
 mod informing;
 mod sums;

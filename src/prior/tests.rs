@@ -3,6 +3,10 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod joint;
+mod line;
+mod parts;
+
 use proptest::prelude::*;
 use statrs::distribution::{self as independent, Continuous, ContinuousCDF};
 
@@ -401,8 +405,10 @@ fn impossible_arguments_are_impossible_in_every_way() {
                 let possible = AnyPrior::parse(&text).is_ok();
                 let x = prior.quantile(0.5).unwrap().max(0.5);
                 let x = if prior.name() == "Uniform" { 0.6 } else { x };
+                let log = log_density(&built, x);
+                assert!(!log.is_nan(), "{text} at {x}");
                 assert_eq!(
-                    log_density(&built, x) > f64::NEG_INFINITY,
+                    log > f64::NEG_INFINITY,
                     possible && Prior::<Plain>::support(&built).contains(x),
                     "{text} at {x}"
                 );
@@ -426,10 +432,12 @@ fn flat_is_flat_and_improper() {
 
 #[test]
 fn the_way_to_the_line_and_back() {
-    let supports: [Support<Plain>; 4] = [
+    let supports: [Support<Plain>; 6] = [
         Support::Line,
         Support::Above(0.0.into()),
         Support::Above(Real::new(-2.0)),
+        Support::Below(0.0.into()),
+        Support::Below(Real::new(3.0)),
         Support::Between(Real::new(-1.0), Real::new(0.5)),
     ];
     for support in supports {

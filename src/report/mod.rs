@@ -252,5 +252,7 @@ impl ParameterReport {
     }
 }
 
+// The page is one of the forms they look at.
 #[cfg(test)]
+#[cfg(feature = "pages")]
 mod tests;

@@ -146,3 +146,20 @@ impl LogSum {
         self.sum + self.product.ln()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_logarithm_of_a_product_beyond_all_numbers_is_a_sum() {
+        let (mut sum, mut known) = (LogSum::new(), 0.0);
+        for i in 0..4000 {
+            let x = [3.0, 1e200, 0.7, 1e-250, 2e3, 5.0][i % 6];
+            sum.add(x);
+            known += x.ln();
+        }
+        // Round-off of some thousand additions to numbers of some 1e5.
+        assert!((sum.total() - known).abs() < 1e-8, "{known}");
+    }
+}

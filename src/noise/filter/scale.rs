@@ -10,7 +10,6 @@ pub(super) struct Scale<K: Kind> {
     /// What is known of tails, where there are any.
     known: Option<Known<K>>,
     inverse_width: f64,
-    precision: f64,
     /// What each tells of its size.
     size: Real<K>,
 }
@@ -20,13 +19,12 @@ impl<K: Kind> Scale<K> {
     pub(super) fn new(nu: Option<Real<K>>) -> Self {
         let size = Real::new(0.0);
         let known = nu.map(Known::of);
-        Self { known, inverse_width: 1.0, precision: 1.0, size }
+        Self { known, inverse_width: 1.0, size }
     }
 
     /// From here on values have this variance.
     pub(super) fn change(&mut self, variance: &Real<K>) {
-        self.precision = 1.0 / variance.value();
-        self.inverse_width = self.precision.sqrt();
+        self.inverse_width = variance.value().sqrt().recip();
         let log_width = 0.5 * variance.ln();
         let known = self.known.as_ref();
         self.size = known.map_or(log_width, |known| known.size(log_width));
@@ -43,7 +41,7 @@ impl<K: Kind> Scale<K> {
         let per_size = match &self.known {
             None => {
                 // The derivatives of e/sqrt(S).
-                let bend = -0.5 * error.value() * by * self.precision;
+                let bend = -0.5 * error.value() * by * by * by;
                 let terms = [(error, by), (next.variance, bend)];
                 hear(&Real::combine(error.value() * by, terms));
                 1.0

@@ -46,7 +46,8 @@ fn drawn(d: &Diagnosis, sheet: Sheet) -> Option<Figure> {
     let head = lines * (FONT + 6.0) + 2.0;
     let height = head + LARGE + ROOM + below;
     let mut canvas = Canvas::on(sheet, "force", height);
-    legend(&mut canvas, 12.0, 2.0, &entries(d));
+    let is_marked = !d.mismatch.is_empty();
+    legend(&mut canvas, 12.0, 2.0, &entries(&d.forces, is_marked));
     let stretches = |f: &FreeForce| along(&d.mismatch, f.axis);
     let y = scale(large);
     let (left, top) = (Axes::margin(y, LARGE), head + 22.0);
@@ -74,7 +75,7 @@ fn drawn(d: &Diagnosis, sheet: Sheet) -> Option<Figure> {
 pub(crate) fn left_over(d: &Diagnosis) -> Option<Figure> {
     let force = d.left.as_ref().filter(|force| force.at.len() > 1)?;
     Figure::both(|sheet| {
-        let entries = entries(&Diagnosis::default());
+        let entries = entries(std::slice::from_ref(force), false);
         let mut canvas = Canvas::on(sheet, "left", LARGE + ROOM + 40.0);
         let top = legend(&mut canvas, 12.0, 2.0, &entries) + 22.0;
         let (right, bottom) = (sheet.width() - 14.0, top + LARGE);
@@ -100,16 +101,18 @@ fn main(forces: &[FreeForce]) -> Option<&FreeForce> {
     all.clone().find(|f| f.axis == Axis::Place).or_else(|| all.next())
 }
 
-fn entries(d: &Diagnosis) -> Vec<(Key, &'static str)> {
-    let mut out = vec![
-        (Key::Line(MEAN), MEAN_FORCE),
-        (Key::Fill(FLOW), BAND),
-        (Key::Line(SURE), CLEAR),
-    ];
-    if d.forces.iter().any(|force| force.whole.is_some()) {
-        out.insert(2, (Key::Fill(FULL), WHOLE));
+/// What the legend of some forces names: what is drawn.
+fn entries(forces: &[FreeForce], is_marked: bool) -> Vec<(Key, &'static str)> {
+    let mut out = vec![(Key::Line(MEAN), MEAN_FORCE), (Key::Fill(FLOW), BAND)];
+    if forces.iter().any(|force| force.whole.is_some()) {
+        out.push((Key::Fill(FULL), WHOLE));
     }
-    if !d.mismatch.is_empty() {
+    let is_sure =
+        |f: &FreeForce| (0..f.at.len()).any(|i| f.band.sign(i) != 0.0);
+    if forces.iter().any(is_sure) {
+        out.push((Key::Line(SURE), CLEAR));
+    }
+    if is_marked {
         out.push((Key::Fill(MARKED), LOCATED));
     }
     out
