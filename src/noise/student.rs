@@ -332,6 +332,13 @@ mod tests {
     }
 
     #[test]
+    fn values_tell_of_the_tails_as_often_as_there_are_some() {
+        let known = Known::of(D::variable(3.0, 2));
+        let [one, four] = [1, 4].map(|n| known.shape(n).partial(2).powi(2));
+        assert!((four / one - 4.0).abs() < 1e-14);
+    }
+
+    #[test]
     fn trigamma_is_pi_squared_over_six_at_one() {
         let square = std::f64::consts::PI.powi(2);
         let [half, one] = [square / 2.0, square / 6.0];

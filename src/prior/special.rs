@@ -128,6 +128,23 @@ mod tests {
     }
 
     #[test]
+    fn far_tails_of_the_normal_keep_their_digits() {
+        // By mpmath with 40 digits.
+        for (z, known) in [
+            (-20.5, -214.066_728_963_263_8),
+            (-25.0, -316.639_408_008_020_26),
+            (-40.0, -804.608_442_013_753_8),
+        ] {
+            let f = |z| ln_normal_below(Real::<Grad<1>>::variable(z, 0));
+            let found = f(z);
+            assert!((found.value() / known - 1.0).abs() < 1e-15, "{z}");
+            let slope = (f(z + 1e-5) - f(z - 1e-5)).value() / 2e-5;
+            // A difference of numbers of some hundreds: their round-off.
+            assert!((found.partial(0) - slope).abs() < 1e-7, "{z}");
+        }
+    }
+
+    #[test]
     fn root_bisects_where_newton_fails() {
         // ln of a distribution function that underflows below -30.
         let f = |u: f64| (if u < -30.0 { f64::NEG_INFINITY } else { u }, 1.0);

@@ -192,9 +192,11 @@ fn blocks_that_are_no_process_are_rejected_or_fail() {
         rejects(&rough(bad, 1.0));
         rejects(&rough(1.0, bad));
         rejects(&Sum::new(smooth(1.0, 1.0), white(bad)));
+        rejects(&Sum::new(ar(&[0.5], bad), white(1.0)));
         rejects(&Sum::new(white(1.0), Tails { nu: x(bad) }));
     }
     rejects(&Sum::new(white(1.0), Growth { growth: x(f64::INFINITY) }));
+    rejects(&Sum::new(ar(&[1.5], 1.0), white(1.0)));
     // At once, however far below 0.
     for nu in [-1e300, -1e12, -0.5, f64::NAN] {
         let tails = Sum::new(white(1.0), Tails { nu: x(nu) });

@@ -132,6 +132,18 @@ fn white_errors_with_tails_tell_what_students_do() {
 }
 
 #[test]
+fn sizes_that_grow_tell_of_their_growth() {
+    let at = Grid::new((0..6).map(f64::from).collect(), None);
+    // Errors of 0 tell nothing of where they are.
+    let r = lifted(&[0.0; 6]);
+    let nu = 4.5;
+    let (sum, _) = told("white + tails + growth", &at, &[0.5, nu, 0.0], &r);
+    // ln of a size is growth (share - 1/2).
+    let squares: f64 = (0..6).map(|i| (at.share(i) - 0.5).powi(2)).sum();
+    close(sum[(2, 2)], 2.0 * nu / (nu + 3.0) * squares, 1e-13);
+}
+
+#[test]
 fn what_is_told_on_the_way_is_the_likelihood_with_its_gradient() {
     let r: Vec<f64> = (0..150).map(|i| (f64::from(i) * 1.3).sin()).collect();
     let long = Grid::new((0..150).map(f64::from).collect(), None);

@@ -1,7 +1,9 @@
 //! Distributions made of others: by reference, mixed, and cut off.
 
 use crate::prior::{
-    AnyPrior, Distribution, Flat, Mixture, Normal, Prior, Truncated, Uniform,
+    AnyPrior, Beta, Cauchy, Distribution, Exponential, Flat, Gamma,
+    HalfCauchy, HalfNormal, InverseGamma, LogNormal, Mixture, Normal, Prior,
+    StudentT, Truncated, Uniform,
 };
 use crate::scalar::{Plain, Real};
 use crate::seed::Seed;
@@ -33,8 +35,22 @@ fn every_family_but_flat_is_proper() {
         assert!(<AnyPrior as Prior<Plain>>::is_proper(&prior), "{prior}");
         assert!(prior.is_proper(), "{prior}");
     }
-    let cut = Truncated::new(Normal::<Plain>::new(0.0, 1.0), 0.0, 1.0);
-    assert!(cut.is_proper());
+    let normal = Normal::<Plain>::new(0.0, 1.0);
+    let all = [
+        normal.is_proper(),
+        Truncated::new(normal, 0.0, 1.0).is_proper(),
+        LogNormal::<Plain>::new(0.0, 1.0).is_proper(),
+        Gamma::<Plain>::new(2.0, 1.0).is_proper(),
+        InverseGamma::<Plain>::new(2.0, 1.0).is_proper(),
+        Exponential::<Plain>::new(1.0).is_proper(),
+        Uniform::<Plain>::new(0.0, 1.0).is_proper(),
+        Beta::<Plain>::new(2.0, 1.0).is_proper(),
+        HalfNormal::<Plain>::new(1.0).is_proper(),
+        HalfCauchy::<Plain>::new(1.0).is_proper(),
+        Cauchy::<Plain>::new(0.0, 1.0).is_proper(),
+        StudentT::<Plain>::new(3.0, 0.0, 1.0).is_proper(),
+    ];
+    assert_eq!(all, [true; 12]);
 }
 
 #[test]
