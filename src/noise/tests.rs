@@ -254,12 +254,15 @@ fn long_gaps_are_as_exact_as_their_steps() {
         };
         close(found.value(), part(0..3) + part(3..5), 1e-9);
     }
-    // Where the correlation survives the gap, against the dense density.
+    // Where the correlation survives the gap, against the dense density; with
+    // odd and even numbers of steps.
     for phi in [&[0.9999][..], &[-0.9999], &[0.999, 0.2], &[-0.999, 0.2]] {
-        let (noise, at) = (ar(phi, 1.0), long(1000));
-        let found = noise.log_likelihood(&at, &lifted(&r)).unwrap();
-        let expected = dense(covariance(&noise, &at), &r);
-        close(found.value(), expected, 1e-9);
+        for steps in [1000, 1001] {
+            let (noise, at) = (ar(phi, 1.0), long(steps));
+            let found = noise.log_likelihood(&at, &lifted(&r)).unwrap();
+            let expected = dense(covariance(&noise, &at), &r);
+            close(found.value(), expected, 1e-9);
+        }
     }
 }
 
@@ -438,6 +441,7 @@ fn what_is_no_process_is_rejected() {
     for phi in [1.0, -1.0, 1.5, f64::NAN] {
         assert!(rejects(&ar(&[phi], 1.0), &at, &r));
         assert!(rejects(&ar(&[0.2, phi], 1.0), &at, &r));
+        assert!(rejects(&ar(&[phi, phi], 1.0), &at, &r));
     }
     let at = uneven(false);
     assert!(rejects(&ar(&[-0.1], 1.0), &at, &lifted(&[0.0; 11])));

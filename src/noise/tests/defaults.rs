@@ -173,55 +173,80 @@ fn scores_have_the_probabilities_of_their_deviates() {
     assert!(score(1e200, 3.0) > 30.0 && score(1e200, 3.0).is_finite());
 }
 
-#[test]
-fn blocks_that_are_no_process_are_rejected_or_fail() {
-    let (x, at) = (Number::new, Grid::new(vec![0.0, 1.0, 2.0], None));
-    let twice = Grid::new(vec![0.0, 1.0, 1.0], None);
+fn smooth(sd: f64, time: f64) -> Matern32<Number> {
+    Matern32 { sd_matern: Real::new(sd), time_matern: Real::new(time) }
+}
+
+fn rough(sd: f64, time: f64) -> Ou<Number> {
+    Ou { sd_ou: Real::new(sd), time_ou: Real::new(time) }
+}
+
+fn white(sigma2: f64) -> White<Number> {
+    White { sigma2: Real::new(sigma2) }
+}
+
+/// Whether residuals are rejected, by whichever way they come.
+fn rejects(noise: &dyn Noise<Plain>, times: [f64; 3]) -> bool {
+    let at = Grid::new(times.to_vec(), None);
     let r = lifted::<Plain>(&[0.3, -0.2, 0.1]);
-    let smooth =
-        |sd, time| Matern32 { sd_matern: x(sd), time_matern: x(time) };
-    let rough = |sd, time| Ou { sd_ou: x(sd), time_ou: x(time) };
-    let white = |sigma2| White { sigma2: x(sigma2) };
-    let rejects = |noise: &dyn Noise<Plain>| {
-        let found = noise.log_likelihood(&at, &r);
-        assert!(matches!(found, Err(Stop::Reject(_))));
-    };
+    let logs =
+        [noise.log_likelihood(&at, &r), noise.inform(&at, &r, &mut |_| {})];
+    logs.iter().all(|log| matches!(log, Err(Stop::Reject(_))))
+}
+
+const EVEN: [f64; 3] = [0.0, 1.0, 2.0];
+const TWICE: [f64; 3] = [0.0, 1.0, 1.0];
+
+#[test]
+fn blocks_that_are_no_process_are_rejected() {
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        rejects(&smooth(bad, 1.0));
-        rejects(&smooth(1.0, bad));
-        rejects(&rough(bad, 1.0));
-        rejects(&rough(1.0, bad));
-        rejects(&Sum::new(smooth(1.0, 1.0), white(bad)));
-        rejects(&Sum::new(ar(&[0.5], bad), white(1.0)));
-        rejects(&Sum::new(white(1.0), Tails { nu: x(bad) }));
+        assert!(rejects(&smooth(bad, 1.0), EVEN));
+        assert!(rejects(&smooth(1.0, bad), EVEN));
+        assert!(rejects(&rough(bad, 1.0), EVEN));
+        assert!(rejects(&rough(1.0, bad), EVEN));
+        assert!(rejects(&Sum::new(smooth(1.0, 1.0), white(bad)), EVEN));
+        assert!(rejects(&Sum::new(ar(&[0.5], bad), white(1.0)), EVEN));
+        let tails = Tails { nu: Number::new(bad) };
+        assert!(rejects(&Sum::new(white(1.0), tails), EVEN));
     }
-    rejects(&Sum::new(white(1.0), Growth { growth: x(f64::INFINITY) }));
-    rejects(&Sum::new(ar(&[1.5], 1.0), white(1.0)));
-    // At once, however far below 0.
-    for nu in [-1e300, -1e12, -0.5, f64::NAN] {
-        let tails = Sum::new(white(1.0), Tails { nu: x(nu) });
-        let student = Student { dof: x(nu), scale: x(1.0) };
-        let noises: [&dyn Noise<Plain>; 2] = [&tails, &student];
-        for noise in noises {
-            let told = noise.inform(&at, &r, &mut |_| {});
-            assert!(matches!(told, Err(Stop::Reject(_))), "{nu}");
-        }
-    }
+    assert!(rejects(&Sum::new(ar(&[1.5], 1.0), white(1.0)), EVEN));
+    let growth = Growth { growth: Number::new(f64::INFINITY) };
+    assert!(rejects(&Sum::new(white(1.0), growth), EVEN));
     // Of no errors of their own two values at one time are one.
-    let again = rough(1.0, 1.0).log_likelihood(&twice, &r);
-    assert!(matches!(again, Err(Stop::Reject(_))));
-    // Without memory there is a process between the steps.
-    let at = uneven(false);
-    let r = lifted::<Plain>(&vec![0.4; at.len()]);
-    let log = |noise: &dyn Noise<Plain>| {
-        noise.log_likelihood(&at, &r).unwrap().value()
-    };
-    close(log(&ar(&[0.0], 0.7)), log(&Iid { sigma2: x(0.7) }), 1e-13);
+    assert!(rejects(&rough(1.0, 1.0), TWICE));
+}
+
+#[test]
+fn tails_far_below_none_are_rejected_at_once() {
+    for nu in [-1e300, -1e12, -0.5, f64::NAN].map(Number::new) {
+        assert!(rejects(&Sum::new(white(1.0), Tails { nu }), EVEN));
+        let scale = Number::new(1.0);
+        assert!(rejects(&Student { dof: nu, scale }, EVEN));
+    }
+}
+
+#[test]
+fn a_process_is_not_known_twice_at_one_time() {
+    let at = Grid::new(TWICE.to_vec(), None);
     let fails = |noise: &dyn Noise<Plain>, words: &str| {
-        let said = noise.check(&twice).unwrap_err().to_string();
+        let said = noise.check(&at).unwrap_err().to_string();
         assert!(said.contains(words), "{said}");
     };
     fails(&smooth(1.0, 1.0), "matern32");
     fails(&rough(1.0, 1.0), "ou");
     fails(&Sum::new(white(1.0), rough(1.0, 1.0)), "ou");
+    let mut named = |noise: &dyn Noise<Plain>| fails(noise, "ou");
+    let values = lifted::<Plain>(&[1.0, 1.0, 0.5]);
+    parse("ou + white").unwrap().with(&values, &mut named).unwrap();
+}
+
+#[test]
+fn without_memory_there_is_a_process_between_the_steps() {
+    let at = uneven(false);
+    let r = lifted::<Plain>(&vec![0.4; at.len()]);
+    let log = |noise: &dyn Noise<Plain>| {
+        noise.log_likelihood(&at, &r).unwrap().value()
+    };
+    let iid = Iid { sigma2: Number::new(0.7) };
+    close(log(&ar(&[0.0], 0.7)), log(&iid), 1e-13);
 }
