@@ -22,6 +22,9 @@ VISIBLE = 8  # ln: what shows an effect at all
 
 
 def said(name, answers):
+    if not answers:
+        print(f"{name}: none")
+        return
     right = sum(a["answer"] == a["truth"] for a in answers) / len(answers)
     stated = sum(a["probability"] for a in answers) / len(answers)
     print(f"{name}: {right:.2f} of {len(answers)} right, {stated:.2f} stated")

@@ -1,6 +1,7 @@
 //! What a noise of a user's own has without saying it, and what one says of
 //! its errors.
 
+use super::informing::{Carried, informed, moved};
 use super::*;
 
 /// A noise that says no more than it has to.
@@ -29,23 +30,6 @@ impl<K: Kind, N: Noise<K>> Noise<K> for Least<N> {
     }
 }
 
-type Carried = Real<Grad<4>>;
-
-/// The log likelihood and the sums of products of slopes that it hears.
-fn informed(
-    noise: &dyn Noise<Grad<4>>,
-    at: &Grid,
-    r: &[Carried],
-) -> (Carried, DMatrix<f64>) {
-    let mut sums = DMatrix::zeros(4, 4);
-    let mut hear = |number: &Carried| {
-        let slopes = DVector::from_fn(4, |i, _| number.partial(i));
-        sums.ger(1.0, &slopes, &slopes, 1.0);
-    };
-    let total = noise.inform(at, r, &mut hear).unwrap();
-    (total, sums)
-}
-
 /// The noises that say more, on times where they say it.
 fn outspoken() -> Vec<(Box<dyn Noise<Grad<4>>>, Grid)> {
     let v = Carried::variable;
@@ -70,17 +54,14 @@ fn outspoken() -> Vec<(Box<dyn Noise<Grad<4>>>, Grid)> {
 #[test]
 fn a_noise_that_says_the_least_is_as_likely_and_tells_as_much() {
     for (noise, at) in outspoken() {
-        let wave = |i: usize| {
-            let i = i as f64;
-            0.7 * i.sin() + Carried::variable(0.0, 3) * i.cos()
-        };
-        let r: Vec<Carried> = (0..at.len()).map(wave).collect();
+        let wave = (0..at.len()).map(|i| 0.7 * (i as f64).sin());
+        let r = moved(&wave.collect::<Vec<f64>>());
         let least = Least(&*noise);
         let total = |noise: &dyn Noise<Grad<4>>| {
             noise.log_likelihood(&at, &r).unwrap()
         };
-        let (told, sums) = informed(&*noise, &at, &r);
-        let (default, its_sums) = informed(&least, &at, &r);
+        let (sums, told) = informed(&*noise, &at, &r);
+        let (its_sums, default) = informed(&least, &at, &r);
         for all in [total(&*noise), total(&least), default] {
             close(all.value(), told.value(), 1e-12);
             for i in 0..4 {

@@ -2,9 +2,24 @@
 
 use super::*;
 
-type Carried = Real<Grad<4>>;
+pub(super) type Carried = Real<Grad<4>>;
 
 /// The sums of products of what a noise says informs, and its log likelihood.
+pub(super) fn informed(
+    noise: &dyn Noise<Grad<4>>,
+    at: &Grid,
+    r: &[Carried],
+) -> (DMatrix<f64>, Carried) {
+    let mut sums = DMatrix::zeros(4, 4);
+    let mut hear = |number: &Carried| {
+        let slopes = DVector::from_fn(4, |i, _| number.partial(i));
+        sums.ger(1.0, &slopes, &slopes, 1.0);
+    };
+    let total = noise.inform(at, r, &mut hear).unwrap();
+    (sums, total)
+}
+
+/// The same of a noise by its name and the values of its parameters.
 fn told(
     text: &str,
     at: &Grid,
@@ -13,20 +28,16 @@ fn told(
 ) -> (DMatrix<f64>, Carried) {
     let of = |(i, &x): (usize, &f64)| Real::variable(x, i);
     let x: Vec<Carried> = values.iter().enumerate().map(of).collect();
-    let (mut sums, mut total) = (DMatrix::zeros(4, 4), Real::new(0.0));
-    let mut hear = |number: &Carried| {
-        let slopes = DVector::from_fn(4, |i, _| number.partial(i));
-        sums.ger(1.0, &slopes, &slopes, 1.0);
-    };
+    let mut found = None;
     let mut inform = |noise: &dyn Noise<Grad<4>>| {
-        total = noise.inform(at, r, &mut hear).unwrap();
+        found = Some(informed(noise, at, r));
     };
     parse(text).unwrap().with(&x, &mut inform).unwrap();
-    (sums, total)
+    found.unwrap()
 }
 
 /// Residuals that depend on the fourth direction.
-fn moved(r: &[f64]) -> Vec<Carried> {
+pub(super) fn moved(r: &[f64]) -> Vec<Carried> {
     let direction = Carried::variable(0.0, 3);
     let moved = |(i, &r)| r + direction * (1.7 * i as f64).cos();
     r.iter().enumerate().map(moved).collect()

@@ -41,6 +41,18 @@ fn moments(
     sums
 }
 
+/// Checks the moments of so many draws of Beta(a, b).
+fn check_beta([mean, square]: [f64; 2], [a, b]: [f64; 2], draws: usize) {
+    let known = a / (a + b);
+    let variance = known * (1.0 - known) / (a + b + 1.0);
+    // Four and a half standard errors of the mean; more of them of the
+    // variance, since fourth powers of numbers below 1 are below their squares.
+    let error = 4.5 * (variance / draws as f64).sqrt();
+    assert!((mean - known).abs() < error, "{mean} for {known}");
+    let spread = square - mean * mean;
+    assert!((spread - variance).abs() < error, "{spread} for {variance}");
+}
+
 #[test]
 fn shares_have_dirichlets_density() {
     let weights = [2.0, 0.7, 3.0, 1.2];
@@ -67,16 +79,8 @@ fn draws_of_shares_have_dirichlets_moments() {
     let draws = 20_000;
     let shares = Dirichlet::<Plain>::new(weights);
     let found = moments(&shares, weights.len(), draws);
-    for (a, [mean, square]) in weights.iter().zip(found) {
-        let known = a / sum;
-        let variance = known * (1.0 - known) / (sum + 1.0);
-        // Four and a half standard errors.
-        let error = 4.5 * (variance / draws as f64).sqrt();
-        assert!((mean - known).abs() < error, "{mean} for {known}");
-        // A fourth moment is below that of a number between 0 and 1.
-        let spread = square - mean * mean;
-        let error = 4.5 * (variance / draws as f64).sqrt();
-        assert!((spread - variance).abs() < error, "{spread}");
+    for (&a, moments) in weights.iter().zip(found) {
+        check_beta(moments, [a, sum - a], draws);
     }
 }
 
@@ -160,14 +164,9 @@ fn draws_in_order_are_order_statistics() {
     let ordered = Ordered::new(Uniform::<Plain>::new(0.0, 1.0));
     let (n, draws) = (4, 20_000);
     let found = moments(&ordered, n, draws);
-    for (i, [mean, square]) in (1..).zip(found) {
+    for (i, moments) in (1..).zip(found) {
         // The i-th of n is Beta(i, n + 1 - i).
-        let (a, b) = (f64::from(i), (n + 1) as f64 - f64::from(i));
-        let known = a / (a + b);
-        let variance = known * (1.0 - known) / (a + b + 1.0);
-        // Four and a half standard errors; as above.
-        let error = 4.5 * (variance / draws as f64).sqrt();
-        assert!((mean - known).abs() < error, "{mean} for {known}");
-        assert!((square - mean * mean - variance).abs() < error);
+        let (a, all) = (f64::from(i), (n + 1) as f64);
+        check_beta(moments, [a, all - a], draws);
     }
 }

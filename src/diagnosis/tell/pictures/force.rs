@@ -107,9 +107,8 @@ fn entries(forces: &[FreeForce], is_marked: bool) -> Vec<(Key, &'static str)> {
     if forces.iter().any(|force| force.whole.is_some()) {
         out.push((Key::Fill(FULL), WHOLE));
     }
-    let is_sure =
-        |f: &FreeForce| (0..f.at.len()).any(|i| f.band.sign(i) != 0.0);
-    if forces.iter().any(is_sure) {
+    let has_clear = |f: &FreeForce| (0..f.at.len()).any(|i| is_clear(f, i));
+    if forces.iter().any(has_clear) {
         out.push((Key::Line(SURE), CLEAR));
     }
     if is_marked {
@@ -171,12 +170,17 @@ fn names(axis: Axis) -> (&'static str, &'static str) {
     }
 }
 
+/// Whether the band leaves zero out in a cell.
+fn is_clear(f: &FreeForce, cell: usize) -> bool {
+    f.band.sign(cell) != 0.0
+}
+
 /// The mean where the band leaves zero out; broken elsewhere.
 fn sure(axes: &Axes, f: &FreeForce) -> Vec<Point> {
     let half = 0.5 * f.at.windows(2).next().map_or(0.0, |w| w[1] - w[0]);
     let mut points = Vec::new();
     for (i, (x, m)) in f.at.iter().zip(&f.band.mean).enumerate() {
-        if f.band.sign(i) != 0.0 {
+        if is_clear(f, i) {
             // A cell alone is still a line.
             points.push(axes.at(x - 0.2 * half, *m));
             points.push(axes.at(x + 0.2 * half, *m));
