@@ -79,6 +79,14 @@ impl Frozen {
         Ok(self)
     }
 
+    /// With components fitted to weighted draws, and where these say that it is
+    /// far too low.
+    pub(super) fn mended(mut self, found: &[Particle], seed: Seed) -> Self {
+        let wider = reweighted(&fitted(&self.mixture, found, seed), found);
+        self.mixture = mended(&wider, found).unwrap_or(wider);
+        self
+    }
+
     /// Judged by draws and by where these are moved on to; unless it is good,
     /// with components fitted to the latter.
     pub(super) fn moved_on(

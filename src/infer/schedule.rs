@@ -46,6 +46,9 @@ pub(crate) struct Schedule {
     /// How often fresh draws are made, when the first say that a weight is
     /// missed which those before did not.
     pub(crate) estimates: u64,
+    /// How often a sharp estimate whose weights would have to be warned of mends
+    /// its proposal and is made again, from fresh draws.
+    pub(crate) mendings: u64,
     /// How many draws are moved on to look for places that the proposal misses.
     pub(crate) moved: usize,
     /// By these draws, an effective share at which nothing was missed, whatever
@@ -113,6 +116,7 @@ impl Default for Schedule {
             good_share: 0.03,
             ample_share: 0.1,
             estimates: 2,
+            mendings: 3,
             moved: 400,
             reached_share: 0.05,
             error: 0.045,

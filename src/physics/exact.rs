@@ -339,9 +339,10 @@ impl<K: Kind> Force<K> {
 }
 
 /// A time that is not before what is looked for, by doubling a first one, and
-/// the last one before it; `None` where there is none.
+/// the last one before it; `None` where there is none. The first may be 0,
+/// where a force is too large for a number.
 fn beyond(first: f64, is_before: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
-    let (mut low, mut high) = (0.0, first);
+    let (mut low, mut high) = (0.0, first.max(f64::MIN_POSITIVE));
     while is_before(high) {
         low = high;
         high *= 2.0;
@@ -383,3 +384,17 @@ const GAUSS: [(f64, f64); 8] = [
     (0.944_575_023_073_232_6, 0.062_253_523_938_647_89),
     (0.989_400_934_991_649_9, 0.027_152_459_411_754_095),
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_time_is_bracketed_from_any_first_one() {
+        for first in [0.0, 1e-300, 0.7, 5.0] {
+            let (low, high) = beyond(first, |t| t < 3.0).unwrap();
+            assert!(low < 3.0 && high >= 3.0, "{first}: {low} to {high}");
+        }
+        assert_eq!(beyond(0.0, |_| true), None);
+    }
+}

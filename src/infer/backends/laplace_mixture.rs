@@ -11,7 +11,7 @@
 
 use crate::error::{Error, Result};
 use crate::infer::adapt::Frozen;
-use crate::infer::estimate::{Precision, estimated};
+use crate::infer::estimate::{Estimate, Precision, estimated};
 use crate::infer::proposal::{Component, Mixture};
 use crate::infer::schedule::Schedule;
 use crate::infer::search::{Peaks, SearchSpace, components, outlook};
@@ -143,7 +143,13 @@ impl LaplaceMixture {
                 seed.child(0),
             )?;
             if estimate.suits(precision) {
-                return Ok(estimate.made);
+                let seed = seed.child(3);
+                return match sharp {
+                    true => {
+                        lightened(posterior, frozen, estimate, schedule, seed)
+                    }
+                    false => Ok(estimate.made),
+                };
             }
             frozen.good = false;
             frozen = frozen
@@ -172,6 +178,27 @@ impl LaplaceMixture {
     }
 }
 
+/// A sharp estimate; where its weights are to be warned of, that from fresh
+/// draws of a proposal that is mended by them.
+fn lightened(
+    posterior: &Posterior<'_>,
+    mut frozen: Frozen,
+    mut estimate: Estimate,
+    schedule: &Schedule,
+    seed: Seed,
+) -> Result<Inference> {
+    for time in 0..schedule.mendings {
+        if estimate.made.warnings.is_empty() {
+            break;
+        }
+        let (sharp, seed) = (Precision::Sharp, seed.child(time));
+        frozen = frozen.mended(&estimate.found, seed.child(0));
+        let seed = seed.child(1);
+        estimate = estimated(posterior, &frozen, schedule, sharp, seed)?;
+    }
+    Ok(estimate.made)
+}
+
 /// The mixture of components, each weighing about what it holds: the square
 /// root keeps those in whose approximation is poor.
 pub(in crate::infer) fn mixture(components: &[Component]) -> Result<Mixture> {
@@ -190,13 +217,16 @@ pub(in crate::infer) fn mixture(components: &[Component]) -> Result<Mixture> {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::{DMatrix, DVector};
+    use statrs::distribution::{Continuous, Normal as StatrsNormal};
     use statrs::function::erf::erf;
 
     use super::*;
     use crate::error::{Outcome, Stop};
     use crate::infer::{Evidence, Quiet, Smc};
     use crate::model::{Label, Number, Program, Run};
-    use crate::prior::AnyPrior;
+    use crate::prior::{AnyPrior, Normal};
+    use crate::scalar::Real;
 
     /// b ~ N(0, 1) is asked for only where a ~ N(0, 1) is near 0.
     struct CutShort;
@@ -229,5 +259,51 @@ mod tests {
             let name = backend.name();
             assert!((log - known).abs() < 4.0 * se, "{name}: {log} +- {se}");
         }
+    }
+
+    /// 0 was seen of N(x_i, 0.25), six times, with wide priors.
+    struct Six;
+
+    const WIDE: f64 = 300.0;
+    const SD: f64 = 0.25;
+
+    impl Program for Six {
+        fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
+            for i in 0..6 {
+                let prior = AnyPrior::Normal(0.0, WIDE);
+                let x = run.scalar(Label::new("x", "1").at(i), prior)?;
+                run.observe_each(&0.0, Normal::new(x, Real::new(SD)))?;
+            }
+            Ok(())
+        }
+    }
+
+    /// A share of the variance with which some 40 of 2000 draws are effective.
+    const NARROW: f64 = 0.06;
+
+    /// About the peak of these, with a share of their variances.
+    fn narrow(share: f64) -> Frozen {
+        let covariance = DMatrix::from_diagonal_element(6, 6, share * SD * SD);
+        let part = (1.0, DVector::zeros(6), covariance);
+        let mixture = Mixture::of([part].into_iter()).unwrap();
+        Frozen { good: true, excess: 4.0, ..Frozen::new(mixture) }
+    }
+
+    #[test]
+    fn a_proposal_whose_weights_are_to_be_warned_of_is_mended() {
+        let posterior = Posterior::new(&Six).unwrap();
+        let (sharp, schedule) = (Precision::Sharp, Schedule::default());
+        let (frozen, seed) = (narrow(NARROW), Seed::new(7));
+        let first =
+            estimated(&posterior, &frozen, &schedule, sharp, seed).unwrap();
+        assert!(!first.made.warnings.is_empty(), "its weights are good");
+        let found =
+            lightened(&posterior, frozen, first, &schedule, seed).unwrap();
+        assert_eq!(found.warnings, Vec::<String>::new());
+        let seen = StatrsNormal::new(0.0, WIDE.hypot(SD)).unwrap();
+        let Evidence { log, se, .. } = found.evidence.unwrap();
+        let off = log - 6.0 * seen.ln_pdf(0.0);
+        assert!(off.abs() < 4.0 * se, "{off} +- {se}");
+        assert!(se < 0.1, "{se}");
     }
 }
