@@ -7,7 +7,7 @@ use super::digits::{
     NONE, beside, grouped, p_value, per_cent, significant, whole,
 };
 use super::svg::{Picture, pictures};
-use super::text::{plain, unit};
+use super::text::{law as law_called, plain, unit};
 use super::words::sentences;
 use super::{CalibrationReport, NoiseReport, NoiseRow, ParameterReport};
 
@@ -68,7 +68,7 @@ fn heading(report: &CalibrationReport) -> Markup {
         h1 { (plain(&report.event)) }
         p.sub {
             @if report.synthetic { span.synthetic { "synthetic data" } " " }
-            "Calibration of " (plain(&report.friction)) " friction with "
+            "Calibration of " (law_called(&report.friction)) " friction with "
             (plain(report.errors_told())) " errors" (plain(&report.terms())) " on " (plain(&report.quantity))
         }
     }

@@ -10,6 +10,23 @@ pub(crate) fn plain(text: &str) -> String {
     text.chars().map(|c| if forbidden(c) { '\u{fffd}' } else { c }).collect()
 }
 
+/// With a capital letter.
+pub(crate) fn capital(words: &str) -> String {
+    let mut chars = words.chars();
+    let first = chars.next().map(|c| c.to_uppercase().to_string());
+    first.unwrap_or_default() + chars.as_str()
+}
+
+/// A friction law in a sentence: those called by names have their capitals.
+pub(crate) fn law(name: &str) -> String {
+    let written = |word: &str| match word {
+        "coulomb" | "voellmy" => capital(word),
+        "pcm" => word.to_uppercase(),
+        other => plain(other),
+    };
+    name.split(' ').map(written).collect::<Vec<_>>().join(" ")
+}
+
 /// Whether the recordings of events were computed: a name says so.
 pub(crate) fn is_synthetic(name: &str) -> bool {
     name.to_lowercase().contains("synthetic")
@@ -106,6 +123,14 @@ mod tests {
     fn markup_and_control_characters_become_text() {
         assert_eq!(escape("<a>&\"'"), "&lt;a&gt;&amp;&quot;&#39;");
         assert_eq!(plain("a\u{1b}[31mb"), "a\u{fffd}[31mb");
+    }
+
+    #[test]
+    fn laws_called_by_names_have_capitals() {
+        assert_eq!(law("coulomb + viscous"), "Coulomb + viscous");
+        assert_eq!(law("pcm"), "PCM");
+        assert_eq!(law("velocity-weakening"), "velocity-weakening");
+        assert_eq!(capital("one \u{1f9ca}"), "One \u{1f9ca}");
     }
 
     #[test]

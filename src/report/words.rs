@@ -3,7 +3,7 @@
 use super::digits::{beside, p_value, per_cent, significant};
 use super::misfit::misfit;
 use super::noises::averaged;
-use super::text::unit;
+use super::text::{capital, law, unit};
 use super::{CalibrationReport, LawReport, ParameterReport};
 
 /// The largest R-hat of chains that agree (Vehtari and others, 2021).
@@ -72,18 +72,12 @@ fn subject(report: &CalibrationReport) -> String {
     format!(
         "{} friction with {} errors{} was calibrated on {n} {values} of \
          {}{span}{window}, from the event “{}”{origin}.",
-        capital(&report.friction),
+        capital(&law(&report.friction)),
         report.errors_told(),
         report.terms(),
         report.quantity,
         report.event,
     )
-}
-
-fn capital(word: &str) -> String {
-    let mut chars = word.chars();
-    let first = chars.next().map(|c| c.to_uppercase().to_string());
-    first.unwrap_or_default() + chars.as_str()
 }
 
 fn friction(report: &CalibrationReport) -> Option<String> {

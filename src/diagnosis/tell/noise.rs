@@ -14,22 +14,38 @@ pub(crate) fn noise(d: &Diagnosis) -> Option<String> {
     let taken = d.noise.iter().find(|n| n.name == d.selected_noise)?;
     if d.baseline.infers_noise {
         return Some(format!(
-            "No noise was named: the errors are taken for {} ({}, probability \
-             {}).",
+            "No noise was named: the errors are taken for {} ({}).",
             called(taken),
-            plain(&taken.name),
-            probability(taken.probability),
+            how_probable(d, taken),
         ));
     }
     let named = plain(&d.baseline.noise);
     let against = log10(taken.log10_bayes_factor).replace('-', "−");
     Some(format!(
-        "The errors are taken for {} ({}, probability {}), a log10 Bayes \
-         factor of {against} against {named}.",
+        "The errors are taken for {} ({}), a log10 Bayes factor of {against} \
+         against {named}.",
         called(taken),
-        plain(&taken.name),
-        probability(taken.probability),
+        how_probable(d, taken),
     ))
+}
+
+/// A noise by its name, how probable it is, and which is more so, of those that
+/// the recording tells too little apart to go on with another.
+fn how_probable(d: &Diagnosis, taken: &JudgedNoise) -> String {
+    let said = |noise: &JudgedNoise| {
+        (plain(&noise.name), probability(noise.probability))
+    };
+    let (name, own) = said(taken);
+    let by_probability = |a: &&JudgedNoise, b: &&JudgedNoise| {
+        a.probability.total_cmp(&b.probability)
+    };
+    let most = d.noise.iter().max_by(by_probability).map(said);
+    match most.filter(|(_, most)| *most != own) {
+        Some((other, most)) => {
+            format!("{name}, probability {own}, where {other} has {most}")
+        }
+        None => format!("{name}, probability {own}"),
+    }
 }
 
 /// Whether the model goes on with another noise than the named one.
@@ -83,11 +99,12 @@ mod tests {
         assert_eq!(
             said,
             "The errors are taken for smooth ones beside independent ones, \
-             with outliers (matern32 + white + tails, probability 0.30), a \
-             log10 Bayes factor of +3.1 against iid."
+             with outliers (matern32 + white + tails, probability 0.30, where \
+             iid has 0.70), a log10 Bayes factor of +3.1 against iid."
         );
         // Where none was named, there is nothing to be against.
         d.baseline.infers_noise = true;
+        d.noise[0].probability = 0.25;
         let said = noise(&d).unwrap();
         assert!(said.starts_with("No noise was named: the errors"), "{said}");
         assert!(said.ends_with("white + tails, probability 0.30)."), "{said}");

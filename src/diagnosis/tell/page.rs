@@ -4,7 +4,7 @@
 use maud::{Markup, html};
 
 use crate::diagnosis::tell::phrases::{
-    called, capital, friction, interval, is_corrected, is_unsure, noise_row,
+    called, friction, interval, is_corrected, is_unsure, noise_row,
     probability, with_unit,
 };
 use crate::diagnosis::tell::pictures::{
@@ -16,7 +16,7 @@ use crate::diagnosis::{
     Verdict,
 };
 use crate::report::digits::{beside, significant};
-use crate::report::text::{is_synthetic, plain, unit};
+use crate::report::text::{capital, is_synthetic, plain, unit};
 use crate::report::{drawn, how_computed, noise_table, standalone};
 
 /// `report.html` of a diagnosis: in words first, then what was located, both

@@ -7,7 +7,7 @@ use crate::diagnosis::{
 use crate::physics::forces::Axis;
 use crate::report::NoiseRow;
 use crate::report::digits::{beside, short, significant};
-use crate::report::text::{is_synthetic, plain, unit};
+use crate::report::text::{self, is_synthetic, plain, unit};
 
 /// Whether there is a corrected model to compare with: something was added to
 /// it, or its errors are taken for others.
@@ -62,18 +62,11 @@ pub(crate) fn joined(parts: &[String], last: &str) -> String {
     }
 }
 
-/// With a capital letter.
-pub(crate) fn capital(words: &str) -> String {
-    let mut chars = words.chars();
-    let first = chars.next().map(|c| c.to_uppercase().to_string());
-    first.unwrap_or_default() + chars.as_str()
-}
-
 /// The friction of a model, before “gives”.
 pub(crate) fn friction(b: &Baseline) -> String {
     let law = match b.friction.trim() {
         "" | "none" => "gravity alone".to_owned(),
-        law => format!("{} friction", capital(&plain(law))),
+        law => format!("{} friction", text::law(law)),
     };
     b.mechanisms.iter().fold(law, |law, had| law + " plus " + &plain(had))
 }

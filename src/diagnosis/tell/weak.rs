@@ -3,11 +3,11 @@
 
 use crate::diagnosis::hypothesis::NONE;
 use crate::diagnosis::tell::phrases::{
-    all_called, capital, is_corrected, joined, recorded_in, with_unit,
+    all_called, is_corrected, joined, recorded_in, with_unit,
 };
 use crate::diagnosis::{BeforeAfter, Diagnosis};
 use crate::report::digits::significant;
-use crate::report::text::plain;
+use crate::report::text::{capital, plain};
 
 /// The errors that grow although the evidence does, with what they are called.
 fn worse(d: &Diagnosis) -> Vec<(&'static str, BeforeAfter)> {

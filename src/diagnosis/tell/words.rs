@@ -4,9 +4,9 @@ use crate::diagnosis::tell::law::law;
 use crate::diagnosis::tell::moment::place_or_moment;
 use crate::diagnosis::tell::noise::{is_other, noise};
 use crate::diagnosis::tell::phrases::{
-    all_called, amounts, called, capital, event, friction, interval,
-    is_corrected, is_unsure, joined, judged, log10, model, of_baseline,
-    own_name, probability, range, recorded_in, stretch, with_unit,
+    all_called, amounts, called, event, friction, interval, is_corrected,
+    is_unsure, joined, judged, log10, model, of_baseline, own_name,
+    probability, range, recorded_in, stretch, with_unit,
 };
 use crate::diagnosis::tell::signs::either_sign;
 use crate::diagnosis::tell::weak::{disagreement, withheld};
@@ -16,7 +16,7 @@ use crate::diagnosis::{
 };
 use crate::mechanism::Family;
 use crate::report::digits::{beside, p_value, per_cent, short, significant};
-use crate::report::text::{plain, unit};
+use crate::report::text::{capital, plain, unit};
 
 /// The level of the residual tests.
 const LEVEL: f64 = 0.05;

@@ -1,7 +1,7 @@
 //! Mechanisms as bars of probability, with their Bayes factors.
 
 use super::figure::Figure;
-use crate::diagnosis::tell::phrases::{called, capital, log10, probability};
+use crate::diagnosis::tell::phrases::{called, log10, probability};
 use crate::diagnosis::{Diagnosis, Hypothesis, Judged};
 use crate::mechanism::Family;
 use crate::report::svg::axes::{Axes, Key, Labels, Scale, legend};
@@ -9,7 +9,7 @@ use crate::report::svg::canvas::{
     Anchor, Canvas, FONT, Frame, Sheet, text_width,
 };
 use crate::report::svg::palette::{FAINT, GREY, INK, Pen};
-use crate::report::text::shorten;
+use crate::report::text::{capital, shorten};
 
 /// How many mechanisms have a bar.
 const SHOWN: usize = 12;
