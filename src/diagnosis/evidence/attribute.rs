@@ -2,6 +2,7 @@
 //! together.
 
 use super::fit::{Fit, Prospect, fit, prospect, spread};
+use super::grids::even_grids;
 use super::owns::{MOST_MET, Met, Owns};
 use super::screen::{COARSE, FINE, MET, Mesh, edge_grids};
 use crate::diagnosis::locate::{FreeForce, locate_all};
@@ -355,8 +356,8 @@ fn again(
 }
 
 /// Where a mechanism is looked for, all other coordinates beginning at those
-/// before and after it: anywhere in its prior, with edges as closely as a mesh
-/// is, and at the best place that is known of it.
+/// before and after it: anywhere in its prior, along its grids, with edges as
+/// closely as a mesh is, and at the best place that is known of it.
 pub(super) fn around(
     posterior: &Posterior<'_>,
     mechanism: &dyn Mechanism,
@@ -366,9 +367,10 @@ pub(super) fn around(
     seed: Seed,
 ) -> Result<SearchSpace> {
     let known = known.map(|place| [before, place, after].concat());
-    let anywhere = anywhere(mechanism, before, after, seed);
+    let anywhere = anywhere(mechanism, before, after, seed.child(0));
     let starts = known.into_iter().chain(anywhere).collect();
-    let grids = edge_grids(posterior, mechanism, before, after, mesh)?;
+    let mut grids = edge_grids(posterior, mechanism, before, after, mesh)?;
+    grids.extend(even_grids(mechanism, before, after, seed.child(1)));
     Ok(SearchSpace { prior_starts: 0, starts, grids })
 }
 
@@ -382,5 +384,5 @@ pub(super) fn anywhere(
 ) -> Vec<Vec<f64>> {
     let unknowns = mechanism.unknowns();
     let places = spread(&unknowns, climbs(unknowns.len()), seed).into_iter();
-    places.map(|place| [before, &place, after].concat()).collect()
+    places.map(|(place, _)| [before, &place, after].concat()).collect()
 }

@@ -348,33 +348,46 @@ pub(crate) fn likeliest(
     posterior.line(&best.1)
 }
 
-/// Even places in the prior of some unknowns, on the real line: Halton's points,
-/// shifted at random.
+/// Even places in the prior of some unknowns, on the real line, with how far
+/// the next ones lie: Halton's points, shifted at random.
 pub(crate) fn spread(
     unknowns: &[Unknown],
     count: usize,
     seed: Seed,
-) -> Vec<Vec<f64>> {
+) -> Vec<(Vec<f64>, Vec<f64>)> {
     let mut rng = seed.rng();
     let shifts: Vec<f64> = unknowns.iter().map(|_| rng.random()).collect();
-    let edge = 0.25 * (count as f64).powf(-1.0 / unknowns.len() as f64);
-    let place = |i: u64| {
-        let bases = PRIMES.into_iter().cycle();
-        let each = unknowns.iter().zip(bases).zip(&shifts);
-        let each = each.map(|((unknown, base), shift)| {
-            let p = (radical_inverse(i, base) + shift).fract();
-            denser_at_ends(&unknown.prior, p.clamp(edge, 1.0 - edge))
-        });
-        each.collect()
-    };
-    (1..=count as u64).map(place).collect()
+    let step = (count as f64).powf(-1.0 / unknowns.len() as f64);
+    (1..=count as u64)
+        .map(|i| {
+            unknowns
+                .iter()
+                .zip(PRIMES.into_iter().cycle())
+                .zip(&shifts)
+                .map(|((unknown, base), shift)| {
+                    let p = (radical_inverse(i, base) + shift).fract();
+                    place(&unknown.prior, p, step)
+                })
+                .unzip()
+        })
+        .collect()
 }
 
-/// The place on the line of a prior's quantile: that of the angle whose sin^2 is
-/// the probability. Places lie denser at the ends of a prior, where a short
-/// stretch, or one at the very start of the run, has a mode of its own.
-fn denser_at_ends(prior: &AnyPrior, p: f64) -> f64 {
-    on_line(prior, (p * std::f64::consts::FRAC_PI_2).sin().powi(2))
+/// The place on the line of a prior's quantile, and how far it is to those
+/// half a step away.
+///
+/// Steps are even in the angle whose sin^2 is the probability: places lie
+/// denser at the ends of a prior, where a short stretch, or one at the very
+/// start of the run, has a mode of its own.
+fn place(prior: &AnyPrior, p: f64, step: f64) -> (f64, f64) {
+    let at = |p: f64| {
+        on_line(prior, (p * std::f64::consts::FRAC_PI_2).sin().powi(2))
+    };
+    let edge = 0.25 * step;
+    let middle = p.clamp(edge, 1.0 - edge);
+    let below = at((middle - 0.5 * step).max(0.5 * edge));
+    let above = at((middle + 0.5 * step).min(1.0 - 0.5 * edge));
+    (at(middle), 0.6 * (above - below))
 }
 
 const PRIMES: [u64; 20] = [

@@ -6,6 +6,7 @@ pub(crate) mod carried;
 pub(crate) mod combination;
 mod edges;
 pub(crate) mod fit;
+mod grids;
 pub(crate) mod noises;
 mod others;
 mod owns;
