@@ -145,7 +145,12 @@ fn noise_that_swallowed_the_physics_is_said() {
     let mut weak = adequate();
     weak.baseline.stationary_sd = Some(6.0);
     weak.baseline.innovation_sd = Some(0.5);
-    assert!(in_words(&weak).join(" ").contains("this verdict is weak"));
+    let words = in_words(&weak).join(" ");
+    assert!(words.contains("this verdict is weak"), "{words}");
+    assert!(words.contains("under iid the errors"), "{words}");
+    weak.baseline.infers_noise = true;
+    let words = in_words(&weak).join(" ");
+    assert!(words.contains("under iid, which stands in for"), "{words}");
     weak.baseline.innovation_sd = Some(4.0);
     assert!(!in_words(&weak).join(" ").contains("Beware"));
 }

@@ -117,15 +117,20 @@ impl Hyper {
         ((once / count).ln() + most - spreads, once * once / twice)
     }
 
-    /// ln of all members' likelihood, with its derivatives by means and
-    /// spreads: moments of the weighted draws.
-    fn with_gradient(&self, law: &Law) -> (f64, Law) {
+    /// ln of all members' likelihood.
+    fn log_of_all(&self, law: &Law) -> f64 {
+        let each = self.members.iter();
+        let of = |m: &Weighed| self.log_likelihood(m, 0..m.base.len(), law).0;
+        each.map(of).sum()
+    }
+
+    /// Its derivatives by means and spreads: moments of the weighted draws.
+    fn slopes(&self, law: &Law) -> Law {
         let dimension = self.scales.len();
-        let (mut sum, mut slopes) = (0.0, ([0.0; MOST], [0.0; MOST]));
+        let mut slopes = ([0.0; MOST], [0.0; MOST]);
         for member in &self.members {
             let all = 0..member.base.len();
             let (log, _) = self.log_likelihood(member, all.clone(), law);
-            sum += log;
             let spreads: f64 = law.1[..dimension].iter().map(|s| s.ln()).sum();
             let share = log + spreads + (member.base.len() as f64).ln();
             for draw in all {
@@ -139,7 +144,7 @@ impl Hyper {
                 }
             }
         }
-        (sum, slopes)
+        slopes
     }
 }
 
@@ -191,9 +196,12 @@ impl Program for Hyper {
             (law.0[k], law.1[k]) = (mean.value(), spread.value());
             unknown.push((mean, spread));
         }
-        let (log, slopes) = self.with_gradient(&law);
-        // Its value and its first derivatives, which is all that is asked for.
-        run.increment(log)?;
+        run.increment(self.log_of_all(&law))?;
+        if !K::DIFFERENTIATES {
+            return Ok(());
+        }
+        // The first derivatives are all that is asked for.
+        let slopes = self.slopes(&law);
         for (k, (mean, spread)) in unknown.into_iter().enumerate() {
             let mean = (mean - law.0[k]) * slopes.0[k];
             let spread = (spread - law.1[k]) * slopes.1[k];

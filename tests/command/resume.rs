@@ -50,7 +50,7 @@ fn goes_on(name: &str, words: &[&str], file: &str) {
     let (whole, out) = (folder.join("whole"), folder.join("out"));
     assert!(command(words, &whole).status().unwrap().success());
     let mut stopped = 0;
-    for _ in 0..3 {
+    for _ in 0..2 {
         let mut child = command(words, &out).spawn().unwrap();
         let before = length(&out);
         while child.try_wait().unwrap().is_none() && length(&out) <= before {
@@ -77,13 +77,13 @@ fn length(out: &Path) -> u64 {
 
 #[test]
 fn a_calibration_goes_on_where_it_was_killed() {
-    let words = ["calibrate", "--draws=600000", "--warmup=20000"];
+    let words = ["calibrate", "--draws=400000", "--warmup=20000"];
     goes_on("calibrate", &words, "calibration.json");
 }
 
 #[test]
 fn a_challenge_goes_on_where_it_was_killed() {
-    let words = ["challenge", "--cases=3", "--quick"];
+    let words = ["challenge", "--cases=2", "--quick"];
     goes_on("challenge", &words, "challenge.json");
 }
 

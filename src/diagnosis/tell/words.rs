@@ -443,9 +443,13 @@ fn trap(d: &Diagnosis) -> Option<String> {
              looked acceptable"
         }
     };
+    let stands_in = match b.infers_noise {
+        true => ", which stands in for a noise that was not named,",
+        false => "",
+    };
     Some(format!(
-        "Beware: under {} the errors have a standard deviation of {sd}, {} \
-         times {beside}: {end}.",
+        "Beware: under {}{stands_in} the errors have a standard deviation of \
+         {sd}, {} times {beside}: {end}.",
         plain(&b.noise),
         significant(times, 2)
     ))
