@@ -61,6 +61,19 @@ enum Searched {
     /// Of several, each of which gets a proposal of its own, the highest peak
     /// on the real line, if there is any.
     Highest(Option<Vec<f64>>),
+    /// The same after a rough estimate.
+    Estimated(Box<Fit>),
+}
+
+impl Searched {
+    /// The highest place that is known of several events, on the real line.
+    fn highest(&self) -> Option<&[f64]> {
+        match self {
+            Self::Proposal(_) => None,
+            Self::Highest(highest) => highest.as_deref(),
+            Self::Estimated(fit) => Some(&fit.best),
+        }
+    }
 }
 
 impl Prospect {
@@ -110,6 +123,8 @@ impl Prospect {
             Searched::Proposal(frozen) if frozen.round > FEW_ROUNDS => OPEN,
             Searched::Proposal(_) => UNSEEN,
             Searched::Highest(_) => SEVERAL,
+            Searched::Estimated(fit) if fit.warnings.is_empty() => SETTLED,
+            Searched::Estimated(_) => OPEN,
         };
         self.log + unseen
     }
@@ -119,14 +134,15 @@ impl Prospect {
     pub(crate) fn searching(&self, backend: &LaplaceMixture) -> Option<Self> {
         match self.searched {
             Searched::Proposal(_) => None,
-            Searched::Highest(_) => {
+            _ => {
                 let backend = backend.clone();
                 Some(Self { backend, ..self.clone() })
             }
         }
     }
 
-    /// After learning more, as long as it may reach a threshold.
+    /// After learning more, as long as it may reach a threshold: of several
+    /// events after a rough estimate, since their peaks tell little.
     ///
     /// # Errors
     /// A model that fails.
@@ -137,6 +153,15 @@ impl Prospect {
         threshold: f64,
         seed: Seed,
     ) -> Result<Self> {
+        if let Searched::Highest(_) = self.searched {
+            if self.may_reach(threshold) {
+                let rough = Precision::Rough;
+                let fit = self.fit(program, mechanisms, rough, seed)?;
+                self.log = fit.log_evidence;
+                self.searched = Searched::Estimated(Box::new(fit));
+            }
+            return Ok(self);
+        }
         let with = ByEvent::new(program, mechanisms)?;
         let posterior = Posterior::new(&with)?;
         let most = self.backend.schedule.rounds;
@@ -192,6 +217,11 @@ impl Prospect {
         precision: Precision,
         seed: Seed,
     ) -> Result<Fit> {
+        if let Searched::Estimated(fit) = &self.searched
+            && precision == Precision::Rough
+        {
+            return Ok(fit.as_ref().clone());
+        }
         let with = ByEvent::new(program, mechanisms)?;
         let posterior = Posterior::new(&with)?;
         let backend = &self.backend;
@@ -199,12 +229,10 @@ impl Prospect {
             Searched::Proposal(frozen) => {
                 backend.estimate(&posterior, frozen, precision, seed, &Quiet)
             }
-            Searched::Highest(_) => {
-                apart::estimate(&with, &posterior, backend, precision, seed)
-            }
+            _ => apart::estimate(&with, &posterior, backend, precision, seed),
         };
         let mut fit = fit_of(&posterior, found?, with.added())?;
-        if let Searched::Highest(Some(highest)) = &self.searched {
+        if let Some(highest) = self.searched.highest() {
             fit.best = higher(&posterior, fit.best, highest)?;
         }
         Ok(fit)
@@ -220,8 +248,8 @@ impl Prospect {
         mechanisms: &[&dyn Mechanism],
         seed: Seed,
     ) -> Result<Vec<f64>> {
-        if let Searched::Highest(Some(highest)) = &self.searched {
-            return Ok(highest.clone());
+        if let Some(highest) = self.searched.highest() {
+            return Ok(highest.to_vec());
         }
         let fit = self.fit(program, mechanisms, Precision::Rough, seed)?;
         Ok(fit.best)

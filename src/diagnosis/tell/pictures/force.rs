@@ -49,14 +49,14 @@ fn drawn(d: &Diagnosis, sheet: Sheet) -> Option<Figure> {
     let is_marked = !d.mismatch.is_empty();
     legend(&mut canvas, 12.0, 2.0, &entries(&d.forces, is_marked));
     let stretches = |f: &FreeForce| along(&d.mismatch, f.axis);
-    let y = scale(large);
+    let y = scale(large, LARGE);
     let (left, top) = (Axes::margin(y, LARGE), head + 22.0);
     let (right, bottom) = (sheet.width() - 14.0, top + LARGE);
     let frame = Frame { left, top, right, bottom };
     panel(&mut canvas, frame, large, &stretches(large));
     let width = (sheet.width() - 12.0) / columns as f64;
     for (i, force) in small.into_iter().enumerate() {
-        let margin = Axes::margin(scale(force), SMALL);
+        let margin = Axes::margin(scale(force, SMALL), SMALL);
         let start = 4.0 + width * (i % columns) as f64;
         let top = bottom + ROOM + (SMALL + ROOM) * (i / columns) as f64;
         let (left, right) = (start + margin, start + width - GAP);
@@ -79,7 +79,7 @@ pub(crate) fn left_over(d: &Diagnosis) -> Option<Figure> {
         let mut canvas = Canvas::on(sheet, "left", LARGE + ROOM + 40.0);
         let top = legend(&mut canvas, 12.0, 2.0, &entries) + 22.0;
         let (right, bottom) = (sheet.width() - 14.0, top + LARGE);
-        let left = Axes::margin(scale(force), LARGE);
+        let left = Axes::margin(scale(force, LARGE), LARGE);
         let frame = Frame { left, top, right, bottom };
         panel(&mut canvas, frame, force, &[]);
         Some(Figure {
@@ -117,10 +117,12 @@ fn entries(forces: &[FreeForce], is_marked: bool) -> Vec<(Key, &'static str)> {
     out
 }
 
-fn scale(f: &FreeForce) -> Scale {
+/// The forces of a panel of such a height, with room above and below the bands
+/// for which way they act.
+fn scale(f: &FreeForce, height: f64) -> Scale {
     let bands = f.whole.iter().chain([&f.band]).map(Band::ends);
     let ends = bands.flat_map(|(low, high)| [low, high]).flatten();
-    Scale::of(ends.chain([0.0])).padded(0.08)
+    Scale::of(ends.chain([0.0])).padded((FONT + 8.0) / height)
 }
 
 fn panel(
@@ -132,7 +134,8 @@ fn panel(
     let half = 0.5 * f.at.windows(2).next().map_or(0.0, |w| w[1] - w[0]);
     let ends = f.at.first().map(|x| x - half).into_iter();
     let x = Scale::of(ends.chain(f.at.last().map(|x| x + half)));
-    let axes = Axes { frame, x, y: scale(f) };
+    let y = scale(f, frame.height());
+    let axes = Axes { frame, x, y };
     shade(canvas, &axes, stretches);
     let (over, name) = names(f.axis);
     axes.draw(canvas, Labels { x: Some(name), y: Some("force [m/s²]") });
