@@ -257,7 +257,8 @@ impl Prospect {
 }
 
 /// How much more, in ln, a proposal may come to hold: one that has learned
-/// little, one that has poor weights yet, and a good one.
+/// little, one that has poor weights yet, and a good one. A rough estimate of
+/// several events counts as one of the latter two.
 const UNSEEN: f64 = 4.0;
 const OPEN: f64 = 3.0;
 const SETTLED: f64 = 1.0;
