@@ -6,7 +6,7 @@ use std::f64::consts::LN_10;
 use super::mix::mixed;
 use super::noises::Under;
 use crate::calibrate::of_summary;
-use crate::diagnosis::{FreeForce, left_open, locate_all};
+use crate::diagnosis::{FreeForce, left_open, locate_all, no_density};
 use crate::draws::{Draws, log_sum_exp, summarise};
 use crate::error::{Error, Result};
 use crate::infer::Progress;
@@ -100,11 +100,9 @@ fn located(one: &Under<'_>, seed: Seed) -> Result<Located> {
         locate_all(one.program(), &extent, &Axis::ALL, none, seed.child(0))?;
     let gains = forces.iter().map(|force| force.log_bayes_factor);
     let gain = log_sum_exp(gains) - (forces.len() as f64).ln();
-    let more = |a: &&FreeForce, b: &&FreeForce| {
-        a.log_bayes_factor.total_cmp(&b.log_bayes_factor)
-    };
-    let likeliest = forces.iter().max_by(more);
+    let likeliest = FreeForce::likeliest(&forces);
     let open = left_open(one.program(), &extent, &forces, seed.child(1))?;
+    let open = open.ok_or_else(no_density)?;
     Ok(Located {
         draws: open.own,
         logs: [none.log_evidence + gain, none.log_evidence],

@@ -42,7 +42,7 @@ pub(super) struct Arguments {
     /// modes
     #[arg(long, value_parser = with_draws)]
     backend: Option<String>,
-    /// Look quickly, to be made sure of later: at some 64 values, with
+    /// Look quickly, to be confirmed later: at some 64 values, with
     /// 2500 draws of each chain where --draws says nothing else
     #[arg(long)]
     quick: bool,
@@ -66,8 +66,7 @@ fn with_draws(name: &str) -> Result<String, String> {
 }
 
 /// What is said of a calibration with few values and draws.
-const QUICK: &str =
-    "This is a quick look, to be made sure of without --quick.";
+const QUICK: &str = "This is a quick look, to be confirmed without --quick.";
 
 /// What a calibration writes in any case.
 const FILES: [&str; 2] = ["report.html", "calibration.json"];

@@ -62,7 +62,7 @@ pub(super) struct Arguments {
     /// changes verdict or group; takes twice the time
     #[arg(long, conflicts_with = "quick")]
     check_rate: bool,
-    /// Look quickly, to be made sure of later: at some 64 values, under one
+    /// Look quickly, to be confirmed later: at some 64 values, under one
     /// noise, at one mechanism at a time
     #[arg(long)]
     quick: bool,
@@ -111,6 +111,7 @@ impl Arguments {
         told: &Told,
         typed: &str,
     ) -> Result<Answer> {
+        self.refuse_for_one()?;
         let subjects = self.subjects(&self.thin.quickly(self.quick));
         let mut names =
             [&FILES[..], &self.formats.names(), &[FOLDER, CORRECTED]].concat();
@@ -231,6 +232,20 @@ impl Arguments {
             return vec![of(None)];
         }
         self.events.iter().cloned().map(Some).map(of).collect()
+    }
+
+    /// Refuses what is for several events where there is one.
+    fn refuse_for_one(&self) -> Result<()> {
+        let asked = [("--one-law", self.one_law), ("--pooled", self.pooled)];
+        match asked.into_iter().find(|(_, asked)| *asked) {
+            Some((name, _)) if self.events.len() < 2 => {
+                Err(Error::input(format!(
+                    "{name} is of several events, and one is given; expected \
+                     two at least: name the others, or drop {name}"
+                )))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The diagnosis, and what each of several events is called by.

@@ -63,8 +63,8 @@ pub use self::made::{Files, Made, made};
 struct Cli {
     #[command(subcommand)]
     command: Command,
-    /// Tell no progress; errors and warnings are told all the same
-    #[arg(long, short, global = true)]
+    /// Show no progress; errors and warnings are still shown
+    #[arg(long, short, global = true, display_order = 900)]
     quiet: bool,
 }
 
@@ -230,13 +230,21 @@ fn backend_giving(
     lacks: &str,
     enough: fn(Gives) -> bool,
 ) -> Result<String, String> {
-    backend(name, &Effort::default()).map_err(|error| error.to_string())?;
     let able = BACKENDS.iter().filter(|entry| enough(entry.gives));
     let able: Vec<_> = able.map(|entry| entry.name).collect();
     if able.contains(&name) {
         return Ok(name.to_owned());
     }
-    Err(format!("it {lacks}; use {}", able.join(", ")))
+    let able = able.join(", ");
+    match BACKENDS.iter().any(|entry| entry.name == name) {
+        true => Err(format!("it {lacks}; use {able}")),
+        // Whether it was left out when the command was built is told there.
+        false if name == "nuts" => {
+            let built = backend(name, &Effort::default());
+            built.map(|_| name.to_owned()).map_err(|e| e.to_string())
+        }
+        false => Err(format!("it is not known; expected one of {able}")),
+    }
 }
 
 /// Runs the command with the built-in laws.

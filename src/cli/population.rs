@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
 use super::answer::{Answer, Strict, pretty, wrapped};
@@ -18,7 +17,7 @@ use crate::prior::AnyPrior;
 use crate::report::PROGRAM;
 use crate::report::digits::short;
 use crate::seed::Seed;
-use crate::sweep::{DRAWS, Index, Key, Outcome, csv_cell};
+use crate::sweep::{DRAWS, Index, Key, Outcome, calibrated, csv_cell};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -39,19 +38,6 @@ pub(super) struct Arguments {
 
 /// What it writes.
 const FILES: [&str; 2] = ["population.json", "population.csv"];
-
-/// What is read of `sweep.json`.
-#[derive(Debug, Deserialize)]
-struct Listing {
-    verb: String,
-    rows: Vec<Listed>,
-}
-
-#[derive(Debug, Deserialize)]
-struct Listed {
-    event: String,
-    task: Option<String>,
-}
 
 impl Arguments {
     pub(super) fn run(&self, told: &Told) -> Result<Answer> {
@@ -74,10 +60,10 @@ impl Arguments {
 
     /// The events with a calibration, and how many have none.
     fn members(&self) -> Result<(Vec<Member>, usize)> {
-        let listing = self.listing()?;
+        let rows = calibrated(&self.sweep)?;
         let index = Index::of(&self.sweep)?;
         let (mut members, mut without) = (Vec::new(), 0);
-        for row in listing.rows {
+        for row in rows {
             let key = row.task.as_deref().and_then(Key::read);
             let outcome = match key {
                 Some(key) => index.outcome(&key)?,
@@ -92,26 +78,6 @@ impl Arguments {
             }
         }
         Ok((members, without))
-    }
-
-    fn listing(&self) -> Result<Listing> {
-        let path = self.sweep.join("sweep.json");
-        let wrong = |why: &str| {
-            Error::input(format!(
-                "{}: {why}; expected the summary of a sweep of calibrations: \
-                 run couloir sweep LIST --verb calibrate --out {}",
-                place(&path),
-                place(&self.sweep)
-            ))
-        };
-        let text = std::fs::read_to_string(&path)
-            .map_err(|error| wrong(&error.to_string()))?;
-        let listing: Listing = serde_json::from_str(&text)
-            .map_err(|error| wrong(&error.to_string()))?;
-        match listing.verb.as_str() {
-            "calibrate" => Ok(listing),
-            verb => Err(wrong(&format!("it is of the command {verb}"))),
-        }
     }
 
     /// An event of what a sweep keeps of its calibration.

@@ -1,5 +1,6 @@
 //! Words that the command does not take, told as every other error is.
 
+use clap::CommandFactory as _;
 use clap::error::ErrorKind;
 
 use crate::error::Error;
@@ -19,6 +20,12 @@ pub(super) fn refused(error: &clap::Error) -> Error {
     let one_line =
         |part: &str| part.lines().map(str::trim).collect::<Vec<_>>().join(" ");
     let said: Vec<String> = said.map(one_line).collect();
-    let said = said.join("; ");
+    let mut said = said.join("; ");
+    if error.kind() == ErrorKind::InvalidSubcommand {
+        let all = super::Cli::command();
+        let names: Vec<&str> =
+            all.get_subcommands().map(|verb| verb.get_name()).collect();
+        said += &format!("; expected one of {}", names.join(", "));
+    }
     Error::input(said.strip_prefix("error: ").unwrap_or(&said))
 }

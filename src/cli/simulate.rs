@@ -140,7 +140,7 @@ fn assigned(
     let place = place.ok_or_else(|| {
         let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
         format!(
-            "the model has no parameter {}; it has {}",
+            "the model has no parameter {}; expected one of {}",
             quoted(name.trim()),
             names.join(", ")
         )

@@ -267,7 +267,10 @@ impl Arguments {
         if let Some((kind, error)) = refused(&[])
             && kind != ErrorKind::MissingRequiredArgument
         {
-            return Err(error.within("behind --"));
+            return Err(Error::input(format!(
+                "behind --: {error}; expected options of {verb}, which \
+                 couloir {verb} --help lists"
+            )));
         }
         let mut known = HashSet::new();
         for (at, listed) in list.iter().enumerate() {
@@ -280,15 +283,22 @@ impl Arguments {
                 }
                 new |= known.insert(name.to_owned());
             }
-            let of_all = [
-                ErrorKind::MissingRequiredArgument,
-                ErrorKind::UnknownArgument,
-            ];
-            if new
-                && let Some((kind, error)) = refused(&listed.options)
-                && of_all.contains(&kind)
-            {
-                return Err(error.within(place(&self.list)));
+            if !new {
+                continue;
+            }
+            match refused(&listed.options) {
+                Some((ErrorKind::MissingRequiredArgument, error)) => {
+                    return Err(error.within(place(&self.list)));
+                }
+                Some((ErrorKind::UnknownArgument, error)) => {
+                    return Err(Error::input(format!(
+                        "{}:1: a column is no option of {verb} ({error}); \
+                         expected those that couloir {verb} --help lists: \
+                         rename it, or drop it",
+                        place(&self.list)
+                    )));
+                }
+                _ => {}
             }
         }
         Ok(())
@@ -417,10 +427,14 @@ impl Teller<'_> {
     /// Those done before are told of, and are no part of the progress: the
     /// time that is left follows from those done now.
     fn begin(&self, ran: &Ran) {
-        let what = match ran.before {
-            0 => "Events".to_owned(),
-            before => format!("Events, {before} done before"),
-        };
+        let mut what = "Events".to_owned();
+        for (count, told) in
+            [(ran.before, "done before"), (ran.again, "the same as another")]
+        {
+            if count > 0 {
+                what += &format!(", {count} {told}");
+            }
+        }
         match ran.to_do {
             0 => {}
             to_do if self.told.is_bar() => {

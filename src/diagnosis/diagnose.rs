@@ -6,6 +6,7 @@ use crate::diagnosis::compare::baseline::baseline;
 use crate::diagnosis::compare::checks::{
     FittedModel, checks, improvement, pictured, posterior_rmse,
 };
+use crate::diagnosis::compare::scored::check_scored;
 use crate::diagnosis::decide::choose::{Choice, Explained};
 use crate::diagnosis::decide::chosen::Chosen;
 use crate::diagnosis::decide::decision::Decision;
@@ -24,7 +25,7 @@ use crate::diagnosis::findings::{
 };
 use crate::diagnosis::hypothesis::{NONE, UNKNOWN};
 use crate::diagnosis::locate::{
-    FORMULA, FreeForce, Open, free_fit, left, left_open,
+    FORMULA, FreeForce, Open, free_fit, left, left_open, no_density,
 };
 use crate::diagnosis::options::Options;
 use crate::diagnosis::tell::next::next_recording;
@@ -34,7 +35,7 @@ use crate::diagnosis::tell::place::{mark, mismatch};
 use crate::diagnosis::tell::weak::is_weak;
 use crate::diagnosis::together::Sharing;
 use crate::draws::{Draws, summarise};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::infer::Progress;
 use crate::mechanism::Mechanism;
 use crate::mechanism::catalogue::is_held;
@@ -47,8 +48,9 @@ use crate::seed::Seed;
 ///
 /// # Errors
 /// An improper prior, odds of what is not weighed, a mechanism of one's own
-/// that cannot be told from others, an event without a recording, or a model
-/// that fails.
+/// that cannot be told from others, an event without a recording, a model that
+/// scores other series than its event has, or in another order than
+/// [`Event::recordings`], or one that fails.
 pub fn diagnose(
     program: &dyn AnyProgram,
     event: &Event,
@@ -105,6 +107,7 @@ impl Subject<'_> {
         let begun = Instant::now();
         let seed = Seed::new(options.seed);
         check_odds(&options.odds, &self.all)?;
+        check_scored(self.program, &self.events)?;
         let mut table = self.table(options, seed, progress)?;
         let row = self.taken(&mut table, options, seed, progress)?;
         progress.begin("weighing several together", None);
@@ -196,6 +199,7 @@ impl Subject<'_> {
         let mut diagnosis = Diagnosis {
             verdict: *verdict,
             quick: options.quick,
+            odds: options.odds.clone(),
             seed: options.seed,
             rivals: decision.rivals(all, &table.as_it_was()?.none),
             separating: next_recording(*verdict, &group, judged),
@@ -329,12 +333,13 @@ impl Subject<'_> {
         let added = chosen.map(|c| c.mechanisms(all)).unwrap_or_default();
         let terms = chosen.map(|c| c.added(all)).unwrap_or_default();
         let (verdict, pictured) = (diagnosis.verdict, &diagnosis.pictured);
-        let quantity = pictured.first().map_or("", |p| &p.quantity);
+        let quantities: Vec<&str> =
+            pictured.iter().map(|p| &p.quantity[..]).collect();
         // A force of free form is in no event file, nor what goes with it.
         let is_whole = chosen.is_some() || verdict == Verdict::Errors;
         let noise = (is_whole && is_other(diagnosis))
             .then(|| diagnosis.selected_noise.clone());
-        diagnosis.corrected = corrected(&added, noise, options, quantity);
+        diagnosis.corrected = corrected(&added, noise, options, &quantities);
         if verdict == Verdict::Unexplained {
             let line = format!("{UNKNOWN}: {FORMULA}");
             diagnosis.corrected.equation.push(line);
@@ -355,7 +360,8 @@ impl Subject<'_> {
             return Ok(None);
         }
         let (program, found) = (row.noisy.program(), row.found()?);
-        let force = most_probable(&found.forces)?;
+        let force = FreeForce::likeliest(&found.forces);
+        let force = force.ok_or_else(no_density)?;
         free_fit(program, &self.extent, force, &found.none).map(Some)
     }
 
@@ -371,7 +377,7 @@ impl Subject<'_> {
             return Ok(None);
         }
         let (program, forces) = (row.noisy.program(), &row.found()?.forces);
-        left_open(program, &self.extent, forces, seed.child(60)).map(Some)
+        left_open(program, &self.extent, forces, seed.child(60))
     }
 
     /// The law's parameters as they were, corrected, and with the rest of the
@@ -489,12 +495,4 @@ fn completed(forces: &[FreeForce], open: Option<Open>) -> Vec<FreeForce> {
         force.whole = band;
     }
     all
-}
-
-/// The free-form force along the axis with the most evidence.
-fn most_probable(forces: &[FreeForce]) -> Result<&FreeForce> {
-    forces
-        .iter()
-        .max_by(|a, b| a.log_bayes_factor.total_cmp(&b.log_bayes_factor))
-        .ok_or_else(|| Error::inference("no free-form force was inferred"))
 }

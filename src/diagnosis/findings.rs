@@ -1,5 +1,7 @@
 //! What a diagnosis found, as plain data.
 
+use std::collections::BTreeMap;
+
 use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::locate::FreeForce;
 use crate::draws::{Draws, Summary};
@@ -27,6 +29,8 @@ pub struct Diagnosis {
     pub weak: bool,
     /// Whether a quick look had to do.
     pub quick: bool,
+    /// The odds beforehand that were given, by name, against 1 for each other.
+    pub odds: BTreeMap<String, f64>,
     /// Where simulation and recording differ.
     pub mismatch: Vec<Mismatch>,
     /// Everything that was weighed, most probable first.
@@ -451,9 +455,16 @@ pub struct Pictured {
     pub after: Bands,
     /// The track: horizontal distance and elevation \[m\].
     pub track: (Vec<f64>, Vec<f64>),
-    /// The part of the track that the mismatch covers, in the same
-    /// coordinates: x, z of points along it.
-    pub marked: Vec<(f64, f64)>,
+    /// The part of the track that each mismatch covers, in the same
+    /// coordinates: x, z of points along it; none where it is off the track.
+    pub marked: Vec<Vec<(f64, f64)>>,
+}
+
+impl Pictured {
+    /// Whether any mismatch is on its track.
+    pub(crate) fn is_marked(&self) -> bool {
+        self.marked.iter().any(|stretch| !stretch.is_empty())
+    }
 }
 
 #[cfg(test)]

@@ -178,7 +178,7 @@ pub(super) fn pictured() -> Pictured {
         before: bands(&times, 0.45, 2.4),
         after: bands(&times, 1.0, 0.5),
         track: (x.clone(), x.iter().map(|x| height(*x)).collect()),
-        marked: mark.map(|x| (x, height(x))).collect(),
+        marked: vec![mark.map(|x| (x, height(x))).collect()],
         times,
     }
 }

@@ -35,7 +35,7 @@ pub use findings::{
 };
 pub use hypothesis::Hypothesis;
 pub use locate::{Band, CELLS, FreeForce, locate};
-pub(crate) use locate::{left_open, locate_all};
+pub(crate) use locate::{left_open, locate_all, no_density};
 pub use options::Options;
 #[cfg(feature = "pages")]
 pub use tell::page::page;

@@ -113,7 +113,7 @@ impl Options {
             all.friction = laws.join(" + ");
         }
         if all.noise.is_empty() {
-            all.noise = errors.join(" | ");
+            all.noise = errors.join(" + ");
         }
         all
     }

@@ -212,7 +212,7 @@ fn broken() -> Diagnosis {
     d.pictured[0].places[7] = nan;
     d.pictured[0].after.full_high.truncate(3);
     d.pictured[0].track.1[2] = nan;
-    d.pictured[0].marked[2] = (nan, nan);
+    d.pictured[0].marked[0][2] = (nan, nan);
     d.seconds = nan;
     d
 }
@@ -240,6 +240,38 @@ fn pictures_are_well_formed() {
     }
     assert_eq!(figures(&diagnosis()).len(), 4);
     assert!(figures(&Diagnosis::default()).is_empty());
+}
+
+#[test]
+fn each_stretch_of_a_track_is_a_mark_of_its_own_with_its_label() {
+    let mut d = diagnosis();
+    let mut other = d.mismatch[0].clone();
+    (other.place_from, other.place_to) = (230.0, 260.0);
+    d.mismatch.push(other);
+    let x = [230.0, 245.0, 260.0];
+    d.pictured[0].marked.push(x.map(|x| (x, -0.5 * x)).to_vec());
+    let all = figures(&d);
+    let track = all.iter().find(|f| f.id.starts_with("track")).unwrap();
+    for label in ["132 to 187 m", "230 to 260 m"] {
+        assert!(track.svg.contains(label), "{label}");
+    }
+    // The track itself, its two marks, and one in the legend.
+    let curves = track.svg.matches("fill=\"none\"").count();
+    let mut one = diagnosis();
+    one.mismatch.truncate(1);
+    let all = figures(&one);
+    let track = all.iter().find(|f| f.id.starts_with("track")).unwrap();
+    assert_eq!(curves, track.svg.matches("fill=\"none\"").count() + 1);
+}
+
+#[test]
+fn odds_that_were_given_are_told() {
+    let mut d = diagnosis();
+    let even = "the other half shared evenly. ";
+    assert!(page(&d).contains(even));
+    d.odds.insert("surge".to_owned(), 3.0);
+    let told = "shared evenly, times the odds given: surge 3. ";
+    assert!(page(&d).contains(told));
 }
 
 #[test]

@@ -66,12 +66,11 @@ pub(crate) trait Landscape {
     /// The coordinates along which it is not climbed.
     fn held(&self) -> &[usize];
 
-    /// The slope at a place that was come to by a step; `None` where there is
-    /// no density.
+    /// The slope at a place that was come to from another; `None` where there
+    /// is no density.
     fn slope(
         &self,
         at: &DVector<f64>,
-        step: &DVector<f64>,
         from: &Self::Trace,
     ) -> Result<Option<(Slope, Self::Trace)>>;
 
@@ -135,7 +134,6 @@ impl Landscape for Held<'_, '_> {
     fn slope(
         &self,
         at: &DVector<f64>,
-        _step: &DVector<f64>,
         (): &(),
     ) -> Result<Option<(Slope, ())>> {
         Ok(self.slope_at(at.as_slice())?.map(|slope| (slope, ())))
@@ -250,7 +248,7 @@ impl Climb {
             let most = free.map_or(there.height, |off| there.after(&off));
             most - slope.height > self.arrived
         };
-        let landed = landscape.slope(&next, &off, trace)?;
+        let landed = landscape.slope(&next, trace)?;
         let Some((found, other)) = landed.filter(|(s, _)| promises(s)) else {
             return Ok(None);
         };
@@ -289,8 +287,7 @@ impl Climb {
             // Of first tries seven in ten climb, of later ones three: a slope
             // costs three to five densities.
             if (tried == 0 || landscape.can_exceed(&next, slope.height)?)
-                && let Some((found, trace)) =
-                    landscape.slope(&next, &off, trace)?
+                && let Some((found, trace)) = landscape.slope(&next, trace)?
                 && found.height > slope.height
             {
                 *lambda = (*lambda * EASED).max(1e-9);
@@ -332,10 +329,12 @@ impl Peak {
     }
 
     /// Goes along one of the coordinates that are held; those not held follow
-    /// as in the normal approximation.
+    /// as in the normal approximation. There is no height until it is climbed
+    /// from.
     pub(super) fn stride(&mut self, held: &[usize], along: usize, by: f64) {
         let (n, along) = (self.line.len(), held[along]);
         self.line[along] += by;
+        self.height = f64::NEG_INFINITY;
         let free: Vec<usize> = (0..n).filter(|i| !held.contains(i)).collect();
         let rows = self.precision.select_rows(&free);
         let across = rows.column(along) * by;
@@ -420,7 +419,6 @@ mod tests {
         fn slope(
             &self,
             at: &DVector<f64>,
-            _: &DVector<f64>,
             (): &(),
         ) -> Result<Option<(Slope, ())>> {
             self.slopes.set(self.slopes.get() + 1);
@@ -441,7 +439,7 @@ mod tests {
     #[test]
     fn a_step_tried_again_costs_a_height_where_it_falls() {
         let (bend, start) = (Bend::default(), DVector::zeros(1));
-        let (slope, ()) = bend.slope(&start, &start, &()).unwrap().unwrap();
+        let (slope, ()) = bend.slope(&start, &()).unwrap().unwrap();
         let climb = Climb { leaps: 0, ..Climb::default() };
         let top =
             climb.ascend(&bend, (start, slope, ()), |_, _| false).unwrap();

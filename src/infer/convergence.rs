@@ -53,15 +53,15 @@ pub(crate) fn convergence(
     if let Some(Poor { worst, others }) = apart {
         warnings.push(format!(
             "the chains have not agreed on {}{others} (R-hat {:.4}, should \
-             be at most {HIGHEST_RHAT}): ask for more --warmup and --draws, \
-             or compare with smc",
+             be at most {HIGHEST_RHAT}): take more warmup and draws, or \
+             compare with smc",
             worst.name, worst.rhat
         ));
     }
     if let Some(Poor { worst, others }) = few {
         warnings.push(format!(
             "only {:.0} effective draws of {}{others} (bulk {:.0}, tail \
-             {:.0}; {least:.0} are enough): ask for more --draws",
+             {:.0}; {least:.0} are enough): take more draws",
             effective(worst),
             worst.name,
             worst.ess_bulk,

@@ -18,10 +18,7 @@ pub fn kept(
     draws: &Draws,
     seed: Seed,
 ) -> Result<Option<Draws>> {
-    let first = draws.row(0, 0);
-    let mut kept = Kept::new(seed);
-    posterior.hear(Point::Natural(first), &mut kept)?;
-    let names = kept.names;
+    let names = names(posterior, draws, seed)?;
     if names.is_empty() {
         return Ok(None);
     }
@@ -39,6 +36,22 @@ pub fn kept(
         found.push_chain(rows.concat(), acceptance)?;
     }
     Ok(Some(found))
+}
+
+/// What the model keeps at the first draw that it does not reject.
+fn names(
+    posterior: &Posterior<'_>,
+    draws: &Draws,
+    seed: Seed,
+) -> Result<Vec<String>> {
+    for row in draws.rows() {
+        let mut kept = Kept::new(seed);
+        let density = posterior.hear(Point::Natural(row), &mut kept)?;
+        if density.rejected.is_none() {
+            return Ok(kept.names);
+        }
+    }
+    Ok(Vec::new())
 }
 
 fn check(posterior: &Posterior<'_>, names: &[String]) -> Result<()> {

@@ -276,7 +276,7 @@ pub fn backend(name: &str, effort: &Effort) -> Result<Box<dyn Backend>> {
 }
 
 /// Empty draws with the posterior's names and units.
-fn draws_of(posterior: &Posterior<'_>) -> Result<Draws> {
+pub(crate) fn draws_of(posterior: &Posterior<'_>) -> Result<Draws> {
     let parameters = posterior.parameters();
     Draws::new(
         parameters.iter().map(|p| p.name.clone()).collect(),

@@ -109,8 +109,6 @@ pub(super) fn walked<'s>(
             let mut next = places[to].clone();
             next.peak = from.peak;
             next.peak.stride(&next.grid.held, 0, by);
-            // Where there is no density nothing is climbed.
-            next.peak.height = f64::NEG_INFINITY;
             next.climb_on(posterior, STEPS_ASIDE)?;
             if height(&next) > height(&places[to]) {
                 places[to] = next;

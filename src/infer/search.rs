@@ -314,13 +314,9 @@ impl<'a, 'm, 's> Search<'a, 'm, 's> {
         let nearest = self.looked.iter().min_by(|a, b| {
             a.distance(&peak.line).total_cmp(&b.distance(&peak.line))
         });
-        match nearest {
-            None => Component::of_peak(peak),
-            Some(one) => {
-                let Looked { grid, spacing, .. } = one;
-                Component::within(peak, &grid.held, spacing)
-            }
-        }
+        let held = nearest.map_or(&[][..], |one| &one.grid.held);
+        let widths = nearest.map_or(&[][..], |one| &one.spacing);
+        Component::within(peak, held, widths)
     }
 
     fn components(mut self) -> Result<Vec<Component>> {

@@ -55,7 +55,9 @@ pub(super) fn tempered(
     Ok(match sampled {
         Ok(sampled) if again.good && sampled.does => sampled.made,
         Ok(sampled) => compared(led, sampled.made),
-        Err(_) => led,
+        // No draw had a density.
+        Err(error) if error.is_inference() => led,
+        Err(error) => return Err(error),
     })
 }
 

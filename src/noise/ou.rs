@@ -31,7 +31,7 @@ use crate::scalar::{Kind, Real};
 pub struct Ou<S> {
     /// The standard deviation, in the unit of the recording.
     pub sd_ou: S,
-    /// The time in which e-fold is forgotten \[s\].
+    /// The time after which the correlation has fallen to 1/e \[s\].
     pub time_ou: S,
 }
 

@@ -9,7 +9,9 @@
 use super::exact::{End, Force, Pace};
 use super::fitted::{Fitted, Nearest};
 use super::friction::{Friction, Site};
-use super::motion::{Path, Release, Rest, State, Walker, first_piece};
+use super::motion::{
+    NO_BRAKING, Path, Release, Rest, State, Walker, first_piece,
+};
 use super::track::Piece;
 use crate::error::Stop;
 use crate::scalar::{Kind, Real};
@@ -30,9 +32,6 @@ const MOST_DECAY: f64 = 0.5;
 
 /// By what share of its range a leg may end beside it.
 const BESIDE: f64 = 0.1;
-
-/// Braking below this \[m/s2\] is an error about a terminal speed.
-const NO_BRAKING: f64 = 1e-9;
 
 /// Trials before a motion is given up as endless: far above any real track, it
 /// only keeps a pathological law from running for ever.

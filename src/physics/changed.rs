@@ -11,7 +11,9 @@ use super::defect::Defect;
 use super::exact::{End, Force, Pace};
 use super::forces::{Axis, Forces, Moment, NEAR, nearer};
 use super::friction::{Friction, Rate, Varies};
-use super::motion::{Path, Release, Rest, State, Walker, first_piece, follow};
+use super::motion::{
+    NO_BRAKING, Path, Release, Rest, State, Walker, first_piece, follow,
+};
 use super::resistance::{Even, Resistance, Tilt};
 use super::skim::{Crossing, Entry, skim};
 use super::track::Piece;
@@ -382,6 +384,24 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         }
     }
 
+    /// Whether nothing but the speed will change the forces any more.
+    fn is_steady(&self) -> bool {
+        let last = self.index + 1 == self.path.track.pieces().len();
+        let at = self.path.track.origin() + self.place.value();
+        let stairs = self
+            .forces
+            .stair(Axis::Place, at)
+            .min(self.forces.stair(Axis::Time, self.begins.value()));
+        let cut = self.cut.is_some() || self.moment.is_some();
+        last && !cut && stairs == f64::INFINITY
+    }
+
+    /// Whether a mass whose force depends on its speed alone is not braked: then
+    /// it never will be.
+    fn never_brakes(&self) -> bool {
+        !self.rests && self.state(self.begins).acceleration > -NO_BRAKING
+    }
+
     /// Adds to the arrival what the force is beyond its mean.
     #[inline(never)]
     fn mend(&mut self, length: Real<K>) {
@@ -626,6 +646,11 @@ impl<K: Kind> Walker<K> for ChangedWalker<'_, K> {
     fn at_rest(&self) -> Option<Rest<K>> {
         let for_good = self.rests && self.border == Border::Nothing;
         for_good.then_some(Rest { time: self.since, distance: self.place })
+    }
+
+    fn is_endless(&self) -> bool {
+        let never_ends = self.ends == f64::INFINITY;
+        never_ends || self.is_steady() && self.never_brakes()
     }
 }
 

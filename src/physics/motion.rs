@@ -142,6 +142,9 @@ pub(crate) trait Walker<K: Kind> {
 /// only keeps a pathological law from running for ever.
 const MAX_LEGS: usize = 10_000_000;
 
+/// Braking below this \[m/s2\] is an error about a terminal speed.
+pub(super) const NO_BRAKING: f64 = 1e-9;
+
 #[inline(always)]
 pub(super) fn visit_times<K: Kind>(
     mut walker: impl Walker<K>,

@@ -124,14 +124,17 @@ impl Hyper {
         each.map(of).sum()
     }
 
-    /// Its derivatives by means and spreads: moments of the weighted draws.
-    fn slopes(&self, law: &Law) -> Law {
+    /// The same, and its derivatives by means and spreads: moments of the
+    /// weighted draws.
+    fn with_slopes(&self, law: &Law) -> (f64, Law) {
         let dimension = self.scales.len();
+        let spreads: f64 = law.1[..dimension].iter().map(|s| s.ln()).sum();
         let mut slopes = ([0.0; MOST], [0.0; MOST]);
+        let mut sum = 0.0;
         for member in &self.members {
             let all = 0..member.base.len();
             let (log, _) = self.log_likelihood(member, all.clone(), law);
-            let spreads: f64 = law.1[..dimension].iter().map(|s| s.ln()).sum();
+            sum += log;
             let share = log + spreads + (member.base.len() as f64).ln();
             for draw in all {
                 let weight =
@@ -144,7 +147,7 @@ impl Hyper {
                 }
             }
         }
-        slopes
+        (sum, slopes)
     }
 }
 
@@ -196,12 +199,12 @@ impl Program for Hyper {
             (law.0[k], law.1[k]) = (mean.value(), spread.value());
             unknown.push((mean, spread));
         }
-        run.increment(self.log_of_all(&law))?;
         if !K::DIFFERENTIATES {
-            return Ok(());
+            return run.increment(self.log_of_all(&law));
         }
         // The first derivatives are all that is asked for.
-        let slopes = self.slopes(&law);
+        let (log, slopes) = self.with_slopes(&law);
+        run.increment(log)?;
         for (k, (mean, spread)) in unknown.into_iter().enumerate() {
             let mean = (mean - law.0[k]) * slopes.0[k];
             let spread = (spread - law.1[k]) * slopes.1[k];

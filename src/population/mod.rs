@@ -76,9 +76,19 @@ pub struct Population {
     pub warnings: Vec<String>,
 }
 
-/// Enough for two figures of a mean and a spread of a few parameters: each
-/// draw costs a pass over all draws of all events.
-const EFFORT: Effort = Effort { chains: 4, draws: 2_500, warmup: 1_000 };
+/// The fewest draws of a chain and the most: enough for two figures of a mean
+/// and a spread of a few parameters. Each costs a pass over all draws of all
+/// events, and few events, which tell little, leave long tails.
+const FEWEST: usize = 2_500;
+const MOST: usize = 20_000;
+/// Draws of a chain times events.
+const PASSES: usize = 100_000;
+
+/// How long the walk is with so many events.
+fn effort(members: usize) -> Effort {
+    let draws = (PASSES / members).clamp(FEWEST, MOST);
+    Effort { chains: 4, draws, warmup: 2 * draws / 5 }
+}
 
 /// Infers the population that members were drawn from.
 ///
@@ -103,7 +113,7 @@ pub fn pool(
     }
     let hyper = Hyper::of(members)?;
     let posterior = Posterior::new(&hyper)?;
-    let walk = MetropolisHastings::adaptive(&EFFORT);
+    let walk = MetropolisHastings::adaptive(&effort(members.len()));
     progress.begin("population", None);
     let found = infer(&walk, &posterior, seed.child(0), progress)?;
     let draws = found

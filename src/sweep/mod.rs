@@ -9,6 +9,7 @@
 mod files;
 mod journal;
 mod listed;
+mod listing;
 mod page;
 #[cfg(feature = "export")]
 mod parquet;
@@ -22,6 +23,7 @@ mod task;
 pub use files::{Rows, summed, write_csv, write_json};
 pub use journal::{Index, Outcome};
 pub use listed::{Listed, listed};
+pub(crate) use listing::calibrated;
 pub use page::page;
 #[cfg(feature = "export")]
 pub use parquet::write_parquet;

@@ -41,6 +41,9 @@ pub struct Plan<'a> {
 pub struct Ran {
     /// Tasks that had been done before.
     pub before: usize,
+    /// Tasks that stand in the list again, as another event with the same
+    /// files.
+    pub again: usize,
     /// Tasks that this run did.
     pub done: usize,
     /// Tasks of this run that failed.
@@ -72,11 +75,12 @@ pub fn run(
     let is_open = |task: &&Task| {
         index.has_failed(&task.key).is_none_or(|f| f && plan.retry)
     };
-    let mut open: Vec<&Task> = tasks.iter().filter(is_open).collect();
     let mut seen = HashSet::new();
-    open.retain(|task| seen.insert(task.key));
-    let mut ran = Ran { to_do: open.len(), ..Ran::default() };
-    ran.before = tasks.len() - open.len();
+    let each = tasks.iter().filter(|task| seen.insert(task.key));
+    let mut open: Vec<&Task> = each.filter(is_open).collect();
+    let again = tasks.len() - seen.len();
+    let mut ran = Ran { to_do: open.len(), again, ..Ran::default() };
+    ran.before = tasks.len() - again - open.len();
     told(&ran);
     if open.is_empty() {
         return Ok(ran);
@@ -104,7 +108,7 @@ pub fn run(
         drop(receiver);
         kept
     })?;
-    ran.before = tasks.len() - ran.done - ran.failed;
+    ran.before = tasks.len() - again - ran.done - ran.failed;
     Ok(ran)
 }
 

@@ -11,7 +11,7 @@ use couloir::mechanism::catalogue::Catalogue;
 use couloir::mechanism::{
     Candidate, Change, Extent, Family, Mechanism, Missing, Noun, Unknown,
 };
-use couloir::model::{Together, With};
+use couloir::model::{AnyProgram, Together, With};
 use couloir::physics::forces::{Axis, Term};
 use couloir::prelude::*;
 use couloir::prior::AnyPrior;
@@ -86,6 +86,17 @@ model! {
     }
 }
 
+model! {
+    struct PositionFirst { event: Event }
+    friction ~ Coulomb { mu: Gamma(9.0, 0.03) };
+    errors ~ Iid { sigma2: InverseGamma(3.0, 0.1) };
+    likelihood {
+        let flow = event.slide(&friction)?;
+        event.position ~ flow.position() + errors;
+        event.velocity ~ flow.velocity() + errors;
+    }
+}
+
 /// An event on 30 degrees, with some recording.
 fn plan(name: &str) -> Event {
     let times = (1..=40).map(|i| 0.4 * f64::from(i)).collect();
@@ -109,6 +120,27 @@ fn recorded<P: Program>(
     let values = [&[0.2], own].concat();
     let seen = simulate(&truth, &values, Seed::new(seed)).unwrap();
     event.with_recording(seen[0].clone()).unwrap()
+}
+
+#[test]
+fn a_model_that_scores_other_series_than_recorded_is_refused() {
+    let event = plan("one");
+    let position =
+        Series::position(vec![2.0, 4.0, 6.0], vec![3.0, 12.0, 27.0]).unwrap();
+    let both = event.with_recording(position).unwrap();
+    let refused = |model: &dyn AnyProgram| {
+        let options = Options::default();
+        let found = diagnose(model, &both, &options, &Quiet);
+        found.unwrap_err().to_string()
+    };
+    let told = refused(&PositionFirst::new(both.clone()));
+    let expected = "the model scores position (3 values) and velocity (40 \
+        values), but recorded are velocity (40 values) and position (3 \
+        values): expected each recording of an event scored once";
+    assert!(told.starts_with(expected), "{told}");
+    let told = refused(&Dry::new(both.clone()));
+    let expected = "the model scores velocity (40 values), but recorded";
+    assert!(told.starts_with(expected), "{told}");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! A page for each mechanism, its variants on one.
 
 use couloir::mechanism::catalogue::catalogue;
-use couloir::mechanism::{Extent, Family, Mechanism};
+use couloir::mechanism::{Extent, Family, Mechanism, Role};
 
 use super::page::{Page, struct_name};
 use super::sources::{self, source};
@@ -71,13 +71,23 @@ fn of_variant(mechanism: &dyn Mechanism) -> String {
         unit: unknown.unit.to_owned(),
         prior: unknown.prior.to_string(),
     };
-    let rows: Vec<Row> = mechanism.unknowns().into_iter().map(row).collect();
+    let unknowns = mechanism.unknowns();
+    let reaches = unknowns.iter().find_map(|unknown| match unknown.role {
+        Role::Length { .. } => Some(format!(
+            "\nBeforehand `{}` reaches to what is left of the run, where that \
+             is less.\n",
+            unknown.name
+        )),
+        _ => None,
+    });
+    let rows: Vec<Row> = unknowns.into_iter().map(row).collect();
     format!(
         "\nIn an event file: `mechanisms = [\"{}\"]`. The change:\n\n    \
-         {}\n\n{}",
+         {}\n\n{}{}",
         mechanism.label(),
         mechanism.formula(),
-        parameters(&rows)
+        parameters(&rows),
+        reaches.unwrap_or_default()
     )
 }
 

@@ -17,14 +17,19 @@ fn page(name: &str, arguments: usize) -> Page {
     let made = told.above("pub fn new(").unwrap();
     let many = match arguments {
         0 => "It takes no arguments.".to_owned(),
-        1 => "It takes one argument.".to_owned(),
-        n => format!("It takes {n} arguments."),
+        1 => format!("It takes one argument. {made}"),
+        n => format!("It takes {n} arguments. {made}"),
+    };
+    let written = if arguments == 0 { "" } else { ".." };
+    let order = match arguments {
+        0 | 1 => "",
+        _ => " In both the arguments have this order.",
     };
     let head = told.head.split("\n\n").next().unwrap();
     let text = format!(
-        "{about}\n\n{many} {made}\n\nIn an event file: `mu = \"{name}(..)\"` \
-         under `[priors]`. In Rust: `couloir::prior::{name}`. In both the \
-         arguments have this order. A density is that of the textbooks \
+        "{about}\n\n{many}\n\nIn an event file: \
+         `mu = \"{name}({written})\"` under `[priors]`. In Rust: \
+         `couloir::prior::{name}`.{order} A density is that of the textbooks \
          (Johnson, Kotz and Balakrishnan, Continuous Univariate \
          Distributions, 1994 and 1995); look at the names of the arguments, \
          since a scale here is a rate elsewhere.\n"

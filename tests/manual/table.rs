@@ -21,15 +21,29 @@ pub(crate) fn parameters(rows: &[Row]) -> String {
     for row in rows {
         let meaning = match all {
             true => String::new(),
-            false => format!(" {} |", row.meaning),
+            false => format!(" {} |", row.meaning.replace('\n', " ")),
         };
         let [range, middle] = spans(&row.prior);
         table.push_str(&format!(
             "| `{}` |{meaning} {} | `{}` | {range} | {middle} |\n",
-            row.name, row.unit, row.prior
+            row.name,
+            row.unit,
+            rounded(&row.prior)
         ));
     }
     table
+}
+
+/// A prior with arguments of three digits where they have many.
+fn rounded(prior: &str) -> String {
+    let Ok(known) = AnyPrior::parse(prior) else { return prior.to_owned() };
+    let argument = |x: f64| match x.to_string() {
+        few if few.len() <= 7 => few,
+        _ => short(x),
+    };
+    let all: Vec<String> =
+        known.arguments().into_iter().map(argument).collect();
+    format!("{}({})", known.name(), all.join(", "))
 }
 
 /// Where a prior's density is positive, and where nine tenths of it lie; "of

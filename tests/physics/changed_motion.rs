@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
 
 use couloir::mechanism::Mechanism;
 use couloir::mechanism::catalogue::{catalogue, find};
@@ -13,7 +14,7 @@ use couloir::physics::forces::{Axis, Forces, Range, Shape, Stretch, Term};
 use couloir::physics::friction::{LAWS, Laws};
 use couloir::physics::track::Piece;
 use couloir::physics::{
-    GRAVITY, Path, Rate, Release, State, Track, rest_changed, sample,
+    GRAVITY, Path, Rate, Release, State, Track, rest, rest_changed, sample,
     sample_changed,
 };
 use couloir::prior::AnyPrior;
@@ -165,6 +166,33 @@ fn a_force_without_an_end_lets_a_mass_come_to_rest() {
     let slows = GRAVITY * (0.3 * angle.cos() - angle.sin());
     let after = (9.0 - 2.0 * slows) / (slows + 1.0);
     assert!((rest.time.value() - 2.0 - after).abs() < 1e-9);
+}
+
+#[test]
+fn a_mass_that_a_drag_by_stages_never_stops_is_told_at_once() {
+    let release = Release { distance: AT.0.into(), speed: 9.0.into() };
+    let rate = Rate { linear: Real::new(0.06), ..Rate::default() };
+    let forces = of(rate, Stretch::Everywhere, Shape::Even);
+    let coulomb = Laws::default().parse("coulomb").unwrap();
+    let viscous = Laws::default().parse("coulomb + viscous").unwrap();
+    let [mu, drag] = [0.3, 0.06].map(Real::<Plain>::new);
+    let (values, all) = ([mu], [mu, drag]);
+    let on = |degrees: f64| {
+        let track = Track::incline(degrees, 500.0).unwrap();
+        let path = Path::new(&track, 1.3);
+        let found =
+            rest_changed(&path, &coulomb.with(&values), &forces, release);
+        let expected = rest(&path, &viscous.with(&all), release);
+        (found.unwrap(), expected.unwrap())
+    };
+    let begun = Instant::now();
+    let (found, expected) = on(30.0);
+    assert!(found.is_none() && expected.is_none());
+    // It goes on for ever at its terminal speed: to follow it took seconds.
+    assert!(begun.elapsed() < Duration::from_millis(200));
+    let (found, expected) = on(10.0);
+    let [found, expected] = [found, expected].map(|r| r.unwrap().time.value());
+    assert!((found - expected).abs() < 1e-4, "{found} {expected}");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 //! and prints what the next block shows.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
+#![allow(clippy::print_stdout, reason = "what takes long is seen")]
 
 mod blocks;
 mod printed;
@@ -11,6 +12,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
+use std::time::Instant;
 
 use blocks::{Step, steps, words};
 use printed::difference;
@@ -56,12 +58,14 @@ fn begin(folder: &Path) -> bool {
 
 /// What a command prints, or how it failed.
 fn run(command: &str, folder: &Path) -> Result<String, String> {
+    let begun = Instant::now();
     let output = Command::new(env!("CARGO_BIN_EXE_couloir"))
         .args(&words(command)[1..])
         .current_dir(folder)
         .env("COLUMNS", "80")
         .output()
         .unwrap();
+    println!("{:5.1} s: {command}", begun.elapsed().as_secs_f64());
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     let all = text(&output.stdout) + &text(&output.stderr);
     match output.status.code() {

@@ -8,7 +8,7 @@ use crate::diagnosis::evidence::fit::Fit;
 use crate::diagnosis::findings::{BeforeAfter, Improvement, Pictured};
 use crate::draws::{Draws, median, uncorrelated_p};
 use crate::elpd::leave_one_out;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::infer::{LaplaceMixture, Precision, SearchSpace, climb};
 use crate::mechanism::Mechanism;
 use crate::model::{AnyProgram, ByEvent, Point, Posterior, With};
@@ -65,9 +65,6 @@ pub(crate) fn checks(
     known: Option<f64>,
 ) -> Result<Checks> {
     let recorded = recordings(events);
-    if recorded.is_empty() {
-        return Err(Error::input("the event has no recording"));
-    }
     let with = With::new(program, &fitted.mechanisms);
     let posterior = Posterior::new(&with)?;
     let draws = &fitted.fit.draws;
@@ -82,7 +79,7 @@ pub(crate) fn checks(
     let places = recorded.iter().zip(predicted);
     Ok(Checks {
         rmse: rmse(&values.concat(), &predicted.concat()),
-        elpd: leave_one_out(&posterior, draws).map_or(f64::NAN, |l| l.elpd),
+        elpd: elpd(&posterior, draws)?,
         heldout_rmse: held_out(program, fitted, &values)?,
         coverage90: coverage(&bands, &values),
         ljung_box_p: uncorrelated(&found.innovations),
@@ -98,6 +95,15 @@ pub(crate) fn checks(
         innovations: found.innovations,
         bands,
     })
+}
+
+/// By leave-one-out; NaN where no draw has a flow.
+fn elpd(posterior: &Posterior<'_>, draws: &Draws) -> Result<f64> {
+    match leave_one_out(posterior, draws) {
+        Ok(found) => Ok(found.elpd),
+        Err(error) if error.is_inference() => Ok(f64::NAN),
+        Err(error) => Err(error),
+    }
 }
 
 /// The root mean square error of the posterior mean prediction.

@@ -61,13 +61,17 @@ pub(crate) fn least_squares(
         .map(|row| Ok(DVector::from_vec(posterior.line(row)?)))
         .collect::<Result<Vec<_>>>()?;
     let simplices = lines.chunks_exact(corners);
-    let found = parallel::map(simplices, |simplex| search(misfit, simplex));
+    let found =
+        parallel::try_map(simplices, |simplex| search(misfit, simplex))?;
     let flows = found.into_iter().flatten().filter(|e| *e < WALL);
     Ok(flows.fold(f64::NAN, f64::min))
 }
 
 /// The least error that searches from a simplex come to.
-fn search(misfit: Misfit<'_, '_>, first: &[DVector<f64>]) -> Option<f64> {
+fn search(
+    misfit: Misfit<'_, '_>,
+    first: &[DVector<f64>],
+) -> Result<Option<f64>> {
     let mut best: Option<(f64, DVector<f64>)> = None;
     for _ in 0..ROUNDS {
         let simplex = match &best {
@@ -75,12 +79,13 @@ fn search(misfit: Misfit<'_, '_>, first: &[DVector<f64>]) -> Option<f64> {
             Some((_, place)) => about(place, first),
         };
         let iterations = PATIENCE * first.len() as u64;
-        let (error, place) = descend(misfit, simplex, 1e-9, iterations)?;
+        let found = descend(misfit, simplex, 1e-9, iterations)?;
+        let Some((error, place)) = found else { return Ok(None) };
         if best.as_ref().is_none_or(|(least, _)| error < *least) {
             best = Some((error, place));
         }
     }
-    best.map(|(error, _)| error)
+    Ok(best.map(|(error, _)| error))
 }
 
 /// A simplex of the same shape, its first corner at a place.

@@ -132,10 +132,10 @@ impl Prospect {
     /// The same with a search of another kind in its estimate; `None` where the
     /// estimate does not search by itself, as that of several events does.
     pub(crate) fn searching(&self, backend: &LaplaceMixture) -> Option<Self> {
+        let backend = backend.clone();
         match self.searched {
             Searched::Proposal(_) => None,
-            _ => {
-                let backend = backend.clone();
+            Searched::Highest(_) | Searched::Estimated(_) => {
                 Some(Self { backend, ..self.clone() })
             }
         }
@@ -147,21 +147,36 @@ impl Prospect {
     /// # Errors
     /// A model that fails.
     pub(crate) fn pursued(
+        self,
+        program: &dyn AnyProgram,
+        mechanisms: &[&dyn Mechanism],
+        threshold: f64,
+        seed: Seed,
+    ) -> Result<Self> {
+        match &self.searched {
+            Searched::Proposal(_) => {
+                self.learned(program, mechanisms, threshold, seed)
+            }
+            Searched::Highest(_) if self.may_reach(threshold) => {
+                let rough = Precision::Rough;
+                let fit = self.fit(program, mechanisms, rough, seed)?;
+                let log = fit.log_evidence;
+                let searched = Searched::Estimated(Box::new(fit));
+                Ok(Self { searched, log, ..self })
+            }
+            Searched::Highest(_) | Searched::Estimated(_) => Ok(self),
+        }
+    }
+
+    /// Of one event, after its proposal learned more, as long as it may reach
+    /// a threshold.
+    fn learned(
         mut self,
         program: &dyn AnyProgram,
         mechanisms: &[&dyn Mechanism],
         threshold: f64,
         seed: Seed,
     ) -> Result<Self> {
-        if let Searched::Highest(_) = self.searched {
-            if self.may_reach(threshold) {
-                let rough = Precision::Rough;
-                let fit = self.fit(program, mechanisms, rough, seed)?;
-                self.log = fit.log_evidence;
-                self.searched = Searched::Estimated(Box::new(fit));
-            }
-            return Ok(self);
-        }
         let with = ByEvent::new(program, mechanisms)?;
         let posterior = Posterior::new(&with)?;
         let most = self.backend.schedule.rounds;
@@ -229,7 +244,9 @@ impl Prospect {
             Searched::Proposal(frozen) => {
                 backend.estimate(&posterior, frozen, precision, seed, &Quiet)
             }
-            _ => apart::estimate(&with, &posterior, backend, precision, seed),
+            Searched::Highest(_) | Searched::Estimated(_) => {
+                apart::estimate(&with, &posterior, backend, precision, seed)
+            }
         };
         let mut fit = fit_of(&posterior, found?, with.added())?;
         if let Some(highest) = self.searched.highest() {

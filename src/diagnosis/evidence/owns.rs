@@ -135,9 +135,7 @@ impl Owns {
     ) -> Result<Self> {
         let with = With::new(program, &[]);
         let posterior = Posterior::new(&with)?;
-        let likely = forces
-            .iter()
-            .max_by(|a, b| a.log_bayes_factor.total_cmp(&b.log_bayes_factor));
+        let likely = FreeForce::likeliest(forces);
         let open = likely.and_then(FreeForce::likeliest_own);
         let rows = none.draws.thinned(DRAWN).into_iter();
         let drawn: Vec<Vec<f64>> =

@@ -176,13 +176,19 @@ impl<'a> Survey<'a, '_> {
         let weighed = parallel::map(&new, |(name, program)| {
             self.weighed(name, &**program, known)
         });
-        // A noise under which nothing has a density is out of the question.
-        let found = new.into_iter().zip(weighed);
-        let found = found.filter_map(|((name, program), weighed)| {
-            let (program, found) = (Held::Other(program), weighed.ok()?);
-            Some(Weighed { name, program, found })
-        });
-        Ok(found.collect())
+        let mut found = Vec::new();
+        for ((name, program), weighed) in new.into_iter().zip(weighed) {
+            let program = Held::Other(program);
+            match weighed {
+                Ok(weighed) => {
+                    found.push(Weighed { name, program, found: weighed });
+                }
+                // Nothing has a density under it: it is out of the question.
+                Err(error) if error.is_inference() => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(found)
     }
 
     /// The named one.

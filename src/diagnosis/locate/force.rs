@@ -73,6 +73,12 @@ pub struct FreeForce {
 }
 
 impl FreeForce {
+    /// That with the most evidence of some.
+    pub(crate) fn likeliest(all: &[Self]) -> Option<&Self> {
+        let known = all.iter().filter(|f| !f.log_bayes_factor.is_nan());
+        known.max_by(|a, b| a.log_bayes_factor.total_cmp(&b.log_bayes_factor))
+    }
+
     /// From what was found of the process, the model and the force.
     pub(super) fn new(
         extent: &Extent,

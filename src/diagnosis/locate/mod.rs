@@ -19,8 +19,8 @@ mod process;
 mod tangent;
 
 use crate::diagnosis::evidence::fit::{Fit, likeliest};
-use crate::draws::Draws;
 use crate::error::{Error, Result};
+use crate::infer::draws_of;
 use crate::infer::nested::{Effort, integrated};
 use crate::mechanism::{Extent, Mechanism};
 use crate::model::{AnyProgram, ByEvent, Posterior, With};
@@ -72,7 +72,7 @@ pub(crate) fn free_fit(
         .map(|(force, own)| Ok([free.waves(force)?, own.clone()].concat()))
         .collect::<Result<_>>()?;
     let rows = parallel::try_map(&lines, |line| posterior.natural(line))?;
-    let mut draws = empty(&posterior)?;
+    let mut draws = draws_of(&posterior)?;
     draws.push_chain(rows.concat(), None)?;
     let fit = Fit {
         log_evidence: none.log_evidence + force.log_bayes_factor,
@@ -83,14 +83,6 @@ pub(crate) fn free_fit(
         warnings: none.warnings.clone(),
     };
     Ok((Box::new(free), fit))
-}
-
-fn empty(posterior: &Posterior<'_>) -> Result<Draws> {
-    let parameters = posterior.parameters().iter();
-    Draws::new(
-        parameters.clone().map(|p| p.name.clone()).collect(),
-        parameters.map(|p| p.unit.clone()).collect(),
-    )
 }
 
 /// Infers a free-form force along an axis, jointly with the model's own

@@ -17,6 +17,7 @@ use super::marginal::Marginal;
 use super::process::CELLS;
 use crate::draws::{Draws, log_sum_exp};
 use crate::error::Result;
+use crate::infer::draws_of;
 use crate::infer::nested::{Effort, Integral, integrated};
 use crate::mechanism::Extent;
 use crate::model::{AnyProgram, ByEvent, Posterior, Program, With};
@@ -40,7 +41,7 @@ pub(crate) struct Open {
 }
 
 /// Leaves the rest of the physics open, from forces that leave what the law
-/// does to the law.
+/// does to the law; `None` where no force that does more has a density.
 ///
 /// # Errors
 /// A model that fails.
@@ -49,7 +50,7 @@ pub(crate) fn left_open(
     extent: &Extent,
     forces: &[FreeForce],
     seed: Seed,
-) -> Result<Open> {
+) -> Result<Option<Open>> {
     let with = With::new(program, &[]);
     let posterior = Posterior::new(&with)?;
     let total = log_sum_exp(forces.iter().map(|f| f.log_bayes_factor));
@@ -74,13 +75,12 @@ pub(crate) fn left_open(
             drawn.flat_map(|(_, forces)| forces.clone()).collect();
         bands.push(Some(Band::of(&drawn)));
     }
-    let parameters = posterior.parameters().iter();
-    let mut draws = Draws::new(
-        parameters.clone().map(|p| p.name.clone()).collect(),
-        parameters.map(|p| p.unit.clone()).collect(),
-    )?;
-    draws.push_chain(rows, None)?;
-    Ok(Open { own: draws, bands })
+    if rows.is_empty() {
+        return Ok(None);
+    }
+    let mut own = draws_of(&posterior)?;
+    own.push_chain(rows, None)?;
+    Ok(Some(Open { own, bands }))
 }
 
 /// Draws of the process, the model's own parameters and the whole force, from

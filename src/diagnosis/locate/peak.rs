@@ -49,8 +49,7 @@ impl Peak {
         from: &Tangent,
     ) -> Result<Option<Self>> {
         let own = from.own.clone();
-        let still = DVector::zeros(own.len());
-        let Some((slope, tangent)) = ridge.slope(&own, &still, from)? else {
+        let Some((slope, tangent)) = ridge.slope(&own, from)? else {
             return Ok(None);
         };
         let found =
@@ -143,7 +142,6 @@ impl Landscape for Ridge<'_, '_> {
     fn slope(
         &self,
         at: &DVector<f64>,
-        _step: &DVector<f64>,
         from: &Tangent,
     ) -> Result<Option<(Slope, Tangent)>> {
         Ok(self

@@ -190,7 +190,7 @@ fn what_is_left_open_is_what_linear_algebra_says() {
         let force = locate(&program, &extent, Axis::Time, &none, seed);
         let force = [force.unwrap()];
         let open = left_open(&program, &extent, &force, seed.child(9));
-        let open = open.unwrap();
+        let open = open.unwrap().unwrap();
         let draws = open.own.pooled(0);
         let n = draws.len() as f64;
         let found = draws.iter().sum::<f64>() / n;

@@ -1,5 +1,6 @@
 //! A diagnosis as words, tables, pictures, a page, and a model to paste.
 
+mod gain;
 mod json;
 mod law;
 mod moment;

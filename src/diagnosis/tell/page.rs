@@ -162,7 +162,7 @@ fn recorded(d: &Diagnosis, p: &Pictured, i: usize) -> Markup {
 
 /// A track with what was located on it.
 fn on_track(d: &Diagnosis, p: &Pictured, i: usize) -> Markup {
-    let what = if p.marked.is_empty() { "The track" } else { "Where" };
+    let what = if p.is_marked() { "Where" } else { "The track" };
     let [track, _] = of_event(d, p, i);
     section(&title(d, p, what), track)
 }

@@ -13,7 +13,7 @@ pub(crate) fn corrected(
     added: &[&dyn Mechanism],
     noise: Option<String>,
     options: &Options,
-    quantity: &str,
+    quantities: &[&str],
 ) -> Corrected {
     let had = options.mechanisms.iter().map(|m| m.as_ref() as &dyn Mechanism);
     let all: Vec<&dyn Mechanism> = had.chain(added.iter().copied()).collect();
@@ -30,18 +30,24 @@ pub(crate) fn corrected(
         .declarations
         .as_ref()
         .filter(|_| is_known)
-        .map_or_else(String::new, |own| model_text(&all, own, quantity));
+        .map_or_else(String::new, |own| model_text(&all, own, quantities));
     let labels = all.iter().map(|m| m.label()).collect();
     Corrected { equation, model, labels, noise }
 }
 
-/// A program with the model and the mechanisms added to it.
+/// A program with the model, which scores such quantities, and the mechanisms
+/// added to it.
 fn model_text(
     mechanisms: &[&dyn Mechanism],
     blocks: &[String; 2],
-    quantity: &str,
+    quantities: &[&str],
 ) -> String {
     let [friction, errors] = blocks;
+    let scored = |quantity: &&str| {
+        format!("event.{quantity} ~ flow.{quantity}() + errors;\n")
+    };
+    let scored = quantities.iter().map(scored).collect::<Vec<_>>();
+    let scored = scored.join("        ");
     let mut text = format!(
         "use couloir::mechanism::catalogue::find;\n\
          use couloir::infer::Evidence;\n\
@@ -50,7 +56,7 @@ fn model_text(
          model! {{\n    struct Before {{ event: Event }}\n    \
          friction ~ {friction};\n    errors ~ {errors};\n    \
          likelihood {{\n        let flow = event.slide(&friction)?;\n        \
-         event.{quantity} ~ flow.{quantity}() + errors;\n    }}\n}}\n\n\
+         {scored}    }}\n}}\n\n\
          fn evidence(event: Event) -> Result<Option<Evidence>> {{\n    \
          let extent = event.extent();\n    \
          let before = Before::new(event);\n"
@@ -75,4 +81,20 @@ fn model_text(
          Ok(found.evidence)\n}}\n"
     );
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_recording_is_scored() {
+        let blocks = ["Coulomb { mu: 0.3 }", "Iid { sigma2: 1.0 }"];
+        let blocks = blocks.map(str::to_owned);
+        let text = model_text(&[], &blocks, &["velocity", "position"]);
+        let expected = "        let flow = event.slide(&friction)?;\n        \
+            event.velocity ~ flow.velocity() + errors;\n        \
+            event.position ~ flow.position() + errors;\n    }\n}\n";
+        assert!(text.contains(expected), "{text}");
+    }
 }

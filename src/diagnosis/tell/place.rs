@@ -311,24 +311,26 @@ fn between(x: &[f64], y: &[f64], at: f64) -> f64 {
     y[i - 1] + share * (y[i] - y[i - 1])
 }
 
-/// Marks the mismatch on the tracks, as far as they go.
+/// Into how many steps a stretch is cut that is marked on a track.
+const STEPS: i32 = 24;
+
+/// Marks the mismatches on the tracks, as far as they go.
 pub(crate) fn mark(diagnosis: &mut Diagnosis, events: &[&Event]) {
     let owners = recordings(events);
     for (pictured, (event, _)) in diagnosis.pictured.iter_mut().zip(owners) {
         let track = event.track();
-        for m in &diagnosis.mismatch {
+        let stretches = diagnosis.mismatch.iter().map(|m| {
             let on = |place: f64| place - track.origin();
             let from = on(m.place_from).max(0.0);
             let to = on(m.place_to).min(track.length());
             if from > to {
-                continue;
+                return Vec::new();
             }
-            let steps = 24;
-            pictured.marked.extend((0..=steps).map(|i| {
-                let share = f64::from(i) / f64::from(steps);
-                track.position(from + share * (to - from))
-            }));
-        }
+            let share = |i: i32| f64::from(i) / f64::from(STEPS);
+            let along = (0..=STEPS).map(|i| from + share(i) * (to - from));
+            along.map(|place| track.position(place)).collect()
+        });
+        pictured.marked = stretches.collect();
     }
 }
 
@@ -405,8 +407,9 @@ mod tests {
         };
         mark(&mut d, &[&upper, &lower]);
         let x = 20.0 * 20.0_f64.to_radians().cos();
-        assert!((d.pictured[0].marked[0].0 - x).abs() < 1e-9);
-        assert!(d.pictured[1].marked.is_empty());
+        let begin = d.pictured[0].marked[0][0];
+        assert!((begin.0 - x).abs() < 1e-9);
+        assert!(d.pictured[1].marked[0].is_empty());
     }
 
     fn mismatched() -> Mismatch {

@@ -1,8 +1,9 @@
 //! A diagnosis in sentences that a snow scientist can check.
 
+use crate::diagnosis::tell::gain::{ahead, better, correlated, rest};
 use crate::diagnosis::tell::law::law;
 use crate::diagnosis::tell::moment::place_or_moment;
-use crate::diagnosis::tell::noise::{is_other, noise};
+use crate::diagnosis::tell::noise::noise;
 use crate::diagnosis::tell::phrases::{
     all_called, amounts, called, event, friction, interval, is_corrected,
     is_unsure, joined, judged, log10, model, of_baseline, own_name,
@@ -29,7 +30,7 @@ const RIVAL: f64 = 0.01;
 /// How many stretches, and how many parts of one, are told.
 const TOLD: usize = 2;
 
-/// The diagnosis in five to thirteen plain sentences.
+/// The diagnosis in five to fourteen plain sentences.
 ///
 /// ```
 /// use couloir::diagnosis::{Diagnosis, in_words};
@@ -59,6 +60,7 @@ pub fn in_words(d: &Diagnosis) -> Vec<String> {
         if is_corrected(d) {
             said.push(better(d));
             said.extend(ahead(d));
+            said.extend(correlated(d));
             said.extend(disagreement(d));
             said.extend(rest(d));
         } else {
@@ -76,8 +78,8 @@ pub fn in_words(d: &Diagnosis) -> Vec<String> {
 }
 
 fn quick() -> String {
-    "This is a quick look, to be made sure of without --quick: it had one \
-     noise, one mechanism at a time, and rough evidences."
+    "This is a quick look, to be confirmed without --quick: it had one noise, \
+     one mechanism at a time, and rough evidences."
         .to_owned()
 }
 
@@ -345,71 +347,6 @@ fn uncorrected(d: &Diagnosis) -> String {
         "Nothing is added to the model; its root mean square error is {}.",
         with_unit(&rmse, recorded_in(d))
     )
-}
-
-/// What adding it brings to the fit.
-fn better(d: &Diagnosis) -> String {
-    let i = &d.improvement;
-    let before = with_unit(&significant(i.rmse.before, 2), recorded_in(d));
-    let after = with_unit(&significant(i.rmse.after, 2), recorded_in(d));
-    let mut said = match i.rmse {
-        BeforeAfter { before: b, after: a }
-            if b.is_finite() && a.is_finite() =>
-        {
-            let way = if a < b { "falls" } else { "goes" };
-            format!(
-                "With it the root mean square error {way} from {before} \
-                     to {after}"
-            )
-        }
-        _ => format!("Without it the root mean square error is {before}"),
-    };
-    if i.log10_bayes_factor.is_finite() {
-        let way = if i.log10_bayes_factor < 0.0 { "against" } else { "for" };
-        let size = format!("{:.1}", i.log10_bayes_factor.abs());
-        let what = match is_other(d) && !d.selected.is_empty() {
-            true => "it and for these errors",
-            false => "it",
-        };
-        said += &format!(
-            "; the evidence {way} {what} is a log10 Bayes factor of {size}"
-        );
-    }
-    said + "."
-}
-
-/// Predictions: of the stretch that was held out, and the bands.
-fn ahead(d: &Diagnosis) -> Option<String> {
-    let i = &d.improvement;
-    let known = |p: BeforeAfter| p.before.is_finite() && p.after.is_finite();
-    let mut clauses = Vec::new();
-    if known(i.heldout_rmse) {
-        let after = significant(i.heldout_rmse.after, 2);
-        clauses.push(format!(
-            "predicted from its first 70 %, the rest of the recording is \
-             missed by {} instead of {}",
-            with_unit(&after, recorded_in(d)),
-            significant(i.heldout_rmse.before, 2)
-        ));
-    }
-    if known(i.coverage90) {
-        clauses.push(format!(
-            "the 90 % band holds {} of the values ({} before)",
-            per_cent(i.coverage90.after),
-            per_cent(i.coverage90.before)
-        ));
-    }
-    (!clauses.is_empty()).then(|| capital(&clauses.join("; ")) + ".")
-}
-
-/// The force that is left beside what was selected.
-fn rest(d: &Diagnosis) -> Option<String> {
-    let rest = d.rest.filter(|r| r.specific_force_q95.is_finite())?;
-    Some(format!(
-        "Any force that is left beside that is below {} m/s² on 95 % of the \
-         run.",
-        short(rest.specific_force_q95, 2)
-    ))
 }
 
 /// What the recording cannot tell apart, and what would.

@@ -47,9 +47,7 @@ impl Backend for LaplaceMixture {
         seed: Seed,
         progress: &dyn Progress,
     ) -> Result<Inference> {
-        let frozen = self.frozen(posterior, seed.child(0))?;
-        let seed = seed.child(1);
-        self.estimate(posterior, &frozen, Precision::Sharp, seed, progress)
+        self.explored(posterior, Precision::Sharp, seed, progress)
     }
 }
 
@@ -112,6 +110,22 @@ impl LaplaceMixture {
         let found = self.searched(posterior, seed.child(0))?;
         let Self { schedule, .. } = self;
         found.learned(posterior, schedule, schedule.rounds, seed.child(1))
+    }
+
+    /// Evidence and draws, as sharp as asked.
+    ///
+    /// # Errors
+    /// As [`Backend::explore`].
+    pub(crate) fn explored(
+        &self,
+        posterior: &Posterior<'_>,
+        precision: Precision,
+        seed: Seed,
+        progress: &dyn Progress,
+    ) -> Result<Inference> {
+        let frozen = self.frozen(posterior, seed.child(0))?;
+        let seed = seed.child(1);
+        self.estimate(posterior, &frozen, precision, seed, progress)
     }
 
     /// The evidence from a frozen proposal.

@@ -13,7 +13,7 @@ use argmin::solver::quasinewton::LBFGS;
 use nalgebra::{DMatrix, DVector};
 
 use crate::error::{Error, Result};
-use crate::infer::simplex::{WALL, descend};
+use crate::infer::simplex::{WALL, descend, finished};
 use crate::infer::start::apart;
 use crate::infer::{Backend, Inference, Mode, Progress};
 use crate::model::{Point, Posterior, Weights};
@@ -114,10 +114,10 @@ fn climb(
         let centre = best.1.clone();
         let factor = steps(posterior, &centre)?;
         let descent = Descent { posterior, centre: &centre, factor: &factor };
-        let smooth = quasi_newton(descent, pains.quasi_newton);
+        let smooth = quasi_newton(descent, pains.quasi_newton)?;
         let from = smooth.unwrap_or_else(|| DVector::zeros(centre.len()));
         let spread = if round == 0 { 1.0 } else { 0.3 };
-        let kinked = simplex(descent, &from, spread, pains.simplex);
+        let kinked = simplex(descent, &from, spread, pains.simplex)?;
         for found in [Some(from), kinked].into_iter().flatten() {
             let found = descent.line(&found);
             let at = height(posterior, &found)?;
@@ -151,14 +151,14 @@ fn steps(posterior: &Posterior<'_>, z: &DVector<f64>) -> Result<DMatrix<f64>> {
 fn quasi_newton(
     descent: Descent<'_, '_>,
     iterations: u64,
-) -> Option<DVector<f64>> {
+) -> Result<Option<DVector<f64>>> {
     let start = DVector::zeros(descent.centre.len());
     let solver = LBFGS::new(MoreThuenteLineSearch::new(), 7);
     let run = Executor::new(descent, solver)
         .configure(|state| state.param(start).max_iters(iterations))
-        .run()
-        .ok()?;
-    run.state().get_best_param().cloned()
+        .run();
+    let run = finished(run)?;
+    Ok(run.and_then(|run| run.state().get_best_param().cloned()))
 }
 
 /// Nelder-Mead from a simplex of the given spread about `start`.
@@ -167,7 +167,7 @@ fn simplex(
     start: &DVector<f64>,
     spread: f64,
     iterations: u64,
-) -> Option<DVector<f64>> {
+) -> Result<Option<DVector<f64>>> {
     let mut corners = vec![start.clone()];
     for i in 0..start.len() {
         let mut corner = start.clone();
@@ -175,7 +175,8 @@ fn simplex(
         corners.push(corner);
     }
     let iterations = iterations * start.len() as u64;
-    descend(descent, corners, 1e-10, iterations).map(|(_, place)| place)
+    let found = descend(descent, corners, 1e-10, iterations)?;
+    Ok(found.map(|(_, place)| place))
 }
 
 /// Minus the Hessian of the height on the line, from central differences of

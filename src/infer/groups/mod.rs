@@ -33,7 +33,7 @@ use super::proposal::Component;
 use super::schedule::Schedule;
 use super::search::{SearchSpace, components};
 use super::weights::Sum;
-use super::{Backend, Evidence, Inference, Progress, draws_of};
+use super::{Evidence, Inference, Progress, draws_of};
 use crate::draws::Draws;
 use crate::error::{Error, Result};
 use crate::model::{Point, Posterior};
@@ -96,10 +96,9 @@ impl LaplaceMixture {
     ) -> Result<Inference> {
         grouped.whole.require_proper("the mixture of peaks")?;
         let Some(common) = &grouped.common else {
-            return self.product(grouped, seed, progress);
+            return self.product(grouped, precision, seed, progress);
         };
-        let effort = self.effort(precision);
-        self.within_common(grouped, common, effort, seed, progress)
+        self.within_common(grouped, common, precision, seed, progress)
     }
 
     /// How many draws of what is in common are made.
@@ -117,6 +116,7 @@ impl LaplaceMixture {
     fn product(
         &self,
         grouped: &Grouped<'_>,
+        precision: Precision,
         seed: Seed,
         progress: &dyn Progress,
     ) -> Result<Inference> {
@@ -126,8 +126,9 @@ impl LaplaceMixture {
             .enumerate()
             .map(|(i, group)| {
                 let seed = seed.child(i as u64);
-                self.within_group(group).explore(
+                self.within_group(group).explored(
                     group.posterior,
+                    precision,
                     seed,
                     progress,
                 )
@@ -140,9 +141,12 @@ impl LaplaceMixture {
             found.iter().map(|one| one.evidence.clone()).collect();
         let each =
             each.ok_or_else(|| Error::inference("a group without evidence"))?;
-        let mut warnings: Vec<String> =
-            found.iter().flat_map(|one| one.warnings.clone()).collect();
-        warnings.dedup();
+        let mut warnings: Vec<String> = Vec::new();
+        for warning in found.into_iter().flat_map(|one| one.warnings) {
+            if !warnings.contains(&warning) {
+                warnings.push(warning);
+            }
+        }
         Ok(Inference {
             draws: Some(draws),
             evidence: Some(Evidence {
@@ -184,7 +188,7 @@ impl LaplaceMixture {
         &self,
         grouped: &Grouped<'_>,
         common: &Group<'_>,
-        effort: Effort,
+        precision: Precision,
         seed: Seed,
         progress: &dyn Progress,
     ) -> Result<Inference> {
@@ -202,12 +206,13 @@ impl LaplaceMixture {
             }
         }
         if joint.good {
-            let (sharp, seed) = (Precision::Sharp, seed.child(3));
-            let found = estimated(whole, &joint, &schedule, sharp, seed)?;
-            if found.does {
+            let seed = seed.child(3);
+            let found = estimated(whole, &joint, &schedule, precision, seed)?;
+            if found.suits(precision) {
                 return Ok(found.made);
             }
         }
+        let effort = self.effort(precision);
         self.nested(grouped, common, &parts, effort, seed.child(1))
     }
 

@@ -70,11 +70,12 @@ fn one_within_the_other_is_as_all_at_once() {
         let LaplaceMixture { space, schedule } = &laplace;
         let parts = components(grouped.whole, space, schedule, seed.child(0));
         let parts = parts.unwrap();
-        let effort = laplace.effort(Precision::Sharp);
+        let sharp = Precision::Sharp;
+        let effort = laplace.effort(sharp);
         let nested =
             laplace.nested(grouped, common, &parts, effort, seed.child(1));
         let either =
-            laplace.within_common(grouped, common, effort, seed, &Quiet);
+            laplace.within_common(grouped, common, sharp, seed, &Quiet);
         let [nested, either] = [nested, either].map(|found| {
             let found = found.unwrap();
             assert_eq!(found.warnings, Vec::<String>::new());

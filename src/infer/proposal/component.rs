@@ -31,12 +31,8 @@ impl Component {
         Self { log: self.log, mean: self.mean.select_rows(of), covariance }
     }
 
-    /// About a peak; `None` where it has no width.
-    pub(in crate::infer) fn of_peak(peak: &Peak) -> Option<Self> {
-        Self::new(peak, peak.precision.clone())
-    }
-
-    /// About a peak, along some coordinates no wider than told.
+    /// About a peak, along some coordinates no wider than told; `None` where
+    /// it has no width.
     pub(in crate::infer) fn within(
         peak: &Peak,
         held: &[usize],

@@ -130,12 +130,27 @@ impl Laws {
     /// Reads a sum of laws, such as `coulomb + turbulent`, or `none`.
     ///
     /// # Errors
-    /// A name that is not among the laws; the message lists them.
+    /// A name that is not among the laws, the message lists them; one that
+    /// stands twice.
     pub fn parse(&self, text: &str) -> Result<LawSum> {
         if text.trim() == "none" {
             return Ok(LawSum(Vec::new()));
         }
-        text.split('+').map(|name| self.find(name.trim())).collect()
+        let sum: LawSum = text
+            .split('+')
+            .map(|name| self.find(name.trim()))
+            .collect::<Result<_>>()?;
+        let mut names: Vec<&str> = sum.0.iter().map(|l| l.name()).collect();
+        names.sort_unstable();
+        match names.windows(2).find(|pair| pair[0] == pair[1]) {
+            None => Ok(sum),
+            Some(pair) => Err(Error::input(format!(
+                "friction {} has {} twice; expected each law once: drop one",
+                quoted(text),
+                pair[0]
+            ))
+            .on_page("reference/laws")),
+        }
     }
 
     fn find(&self, name: &str) -> Result<&'static dyn Law> {

@@ -4,8 +4,8 @@ use super::{Friction, Rate, Site, Varies};
 use crate::block::{Block, Field};
 use crate::scalar::{Kind, Real};
 
-/// r = mu g cos(theta) (ratio + (1 - ratio) exp(-u/u0)): mu at rest, falling
-/// to a share r of it at speeds well above u0.
+/// The resistance mu g cos(theta) (r + (1 - r) exp(-u/u0)): mu at rest, falling
+/// to the share r of it at speeds well above u0.
 ///
 /// Outside the exact family: solved in legs, to each of which a force of the
 /// family is fitted.

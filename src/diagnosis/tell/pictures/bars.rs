@@ -130,9 +130,15 @@ fn entries(shown: &[Judged]) -> Vec<(Key, &'static str)> {
 
 fn caption(d: &Diagnosis) -> String {
     let mut out = "Half of the prior probability is on nothing missing, the \
-         other half shared evenly. log10 BF: the Bayes factor against the \
-         model as it was; above 2 is called decisive."
+         other half shared evenly"
         .to_owned();
+    if !d.odds.is_empty() {
+        let told = |(name, odds): (&String, &f64)| format!("{name} {odds}");
+        let told: Vec<String> = d.odds.iter().map(told).collect();
+        out += &format!(", times the odds given: {}", told.join(", "));
+    }
+    out += ". log10 BF: the Bayes factor against the model as it was; above \
+         2 is called decisive.";
     if !d.selected.is_empty() {
         out += " Bold: what the corrected model has.";
     }

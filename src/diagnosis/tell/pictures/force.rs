@@ -219,11 +219,7 @@ fn caption(d: &Diagnosis) -> String {
                 to it: no recording tells the two apart. The pale band is that \
                 of the whole force.";
     }
-    let best = d
-        .forces
-        .iter()
-        .filter(|f| f.log_bayes_factor.is_finite())
-        .max_by(|a, b| a.log_bayes_factor.total_cmp(&b.log_bayes_factor));
+    let best = FreeForce::likeliest(&d.forces);
     if let Some(best) = best.filter(|_| d.forces.len() > 1) {
         let over = names(best.axis).0;
         out += &format!(

@@ -16,6 +16,9 @@ const POINTS: usize = 1500;
 /// The least and the greatest height of the panel.
 const HEIGHTS: (f64, f64) = (150.0, 380.0);
 
+/// From one line of text to the next.
+const LINE: f64 = 14.0;
+
 const SURVEY: Pen = Pen::new(GREY, 2.0);
 const MARK: Pen = Pen::new(MASS, 6.0);
 
@@ -76,41 +79,63 @@ fn fitted(x: &[f64], up: Scale, width: f64) -> (Scale, f64) {
 
 fn entries(p: &Pictured) -> Vec<(Key, &'static str)> {
     let mut out = vec![(Key::Line(SURVEY), "track")];
-    if !p.marked.is_empty() {
+    if p.is_marked() {
         let words = "where simulation and recording differ";
         out.push((Key::Line(MARK), words));
     }
     out
 }
 
+/// Each stretch that is on the track, with its label.
 fn mark(canvas: &mut Canvas, axes: &Axes, d: &Diagnosis, p: &Pictured) {
-    let kept = thinned(p.marked.len(), POINTS);
-    let line: Vec<Point> =
-        kept.iter().map(|&i| axes.at(p.marked[i].0, p.marked[i].1)).collect();
-    canvas.curve(&line, MARK);
-    let Some(m) = d.mismatch.first() else { return };
-    let whole = line.iter().filter(|p| p.0.is_finite() && p.1.is_finite());
-    let points: Vec<&Point> = whole.collect();
-    let Some(&&(x, y)) = points.get(points.len() / 2) else { return };
-    let text = range(m.place_from, m.place_to, "m");
-    // Above the line, on the side to which it falls.
+    let mut labels: Vec<Point> = Vec::new();
+    for (stretch, m) in p.marked.iter().zip(&d.mismatch) {
+        let kept = thinned(stretch.len(), POINTS).into_iter();
+        let at = |i: usize| axes.at(stretch[i].0, stretch[i].1);
+        let line: Vec<Point> = kept.map(at).collect();
+        canvas.curve(&line, MARK);
+        let whole = |p: &Point| p.0.is_finite() && p.1.is_finite();
+        let points: Vec<Point> = line.into_iter().filter(whole).collect();
+        let text = range(m.place_from, m.place_to, "m");
+        label(canvas, axes.frame, &points, &text, &mut labels);
+    }
+}
+
+/// The label of a stretch above its middle, on the side to which it falls, and
+/// above other labels that it would lie on.
+fn label(
+    canvas: &mut Canvas,
+    frame: Frame,
+    points: &[Point],
+    text: &str,
+    labels: &mut Vec<Point>,
+) {
+    let Some(&(x, y)) = points.get(points.len() / 2) else { return };
     let rises = points[0].1 > points[points.len() - 1].1 + 1.0;
-    let room = text_width(&text) + 12.0;
-    let fits = x - room > axes.frame.left;
+    let room = text_width(text) + 12.0;
+    let fits = x - room > frame.left;
     let (x, anchor) = match rises && fits {
         true => (x - 10.0, Anchor::End),
         false => (x.min(canvas.width() - room) + 10.0, Anchor::Start),
     };
-    let y = (y - 12.0).max(axes.frame.top + 12.0);
-    canvas.text((x, y), anchor, MASS, &text);
+    let begin = if anchor == Anchor::End { x - room } else { x };
+    let mut y = (y - 12.0).max(frame.top + 12.0);
+    let near = |(left, height): &Point, y: f64| {
+        (left - begin).abs() < room && (height - y).abs() < LINE
+    };
+    while labels.iter().any(|other| near(other, y)) {
+        y -= LINE;
+    }
+    labels.push((begin, y));
+    canvas.text((x, y), anchor, MASS, text);
 }
 
 fn caption(p: &Pictured, stretched: f64) -> String {
-    let mut out = if p.marked.is_empty() {
-        "The track."
+    let mut out = if p.is_marked() {
+        "Distances of what is marked are along the slope, on the axis that \
+         events share."
     } else {
-        "Distances of the marked stretch are along the slope, on the axis \
-         that events share."
+        "The track."
     }
     .to_owned();
     if stretched.is_finite() && (stretched - 1.0).abs() > 0.05 {
