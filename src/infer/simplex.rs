@@ -1,5 +1,7 @@
 //! Nelder and Mead's search by argmin: it asks for no gradient.
 
+use std::cell::RefCell;
+
 use argmin::core::{CostFunction, Executor, State};
 use argmin::solver::neldermead::NelderMead;
 use nalgebra::DVector;
@@ -24,6 +26,8 @@ pub(crate) fn descend<C>(
 where
     C: CostFunction<Param = DVector<f64>, Output = f64>,
 {
+    let failure = RefCell::new(None);
+    let problem = Costing { problem, failure: &failure };
     let run = NelderMead::new(corners).with_sd_tolerance(tolerance).and_then(
         |solver| {
             Executor::new(problem, solver)
@@ -31,10 +35,38 @@ where
                 .run()
         },
     );
+    if let Some(error) = failure.take() {
+        return finished(Err(error));
+    }
     let Some(run) = finished(run)? else { return Ok(None) };
     let state = run.state();
     let best = state.get_best_param().cloned();
     Ok(best.map(|place| (state.get_best_cost(), place)))
+}
+
+/// A cost that keeps the first failure to itself, as a wall: argmin's simplex
+/// does not pass failures on but panics.
+struct Costing<'f, C> {
+    problem: C,
+    failure: &'f RefCell<Option<argmin::core::Error>>,
+}
+
+impl<C> CostFunction for Costing<'_, C>
+where
+    C: CostFunction<Param = DVector<f64>, Output = f64>,
+{
+    type Param = DVector<f64>;
+    type Output = f64;
+
+    fn cost(&self, x: &DVector<f64>) -> Result<f64, argmin::core::Error> {
+        if self.failure.borrow().is_some() {
+            return Ok(WALL);
+        }
+        self.problem.cost(x).or_else(|error| {
+            self.failure.replace(Some(error));
+            Ok(WALL)
+        })
+    }
 }
 
 /// What a search came to; `None` where it failed by itself.

@@ -388,7 +388,6 @@ impl<'d> Model<'d> {
         let text = section.text("friction")?.unwrap_or("voellmy");
         let friction = laws
             .parse(text)
-            .and_then(once_each)
             .map_err(|error| section.about("friction", error))?;
         let noise = section.text("noise")?.unwrap_or("iid").to_owned();
         if !is_inferred(&noise) {
@@ -412,21 +411,6 @@ impl<'d> Model<'d> {
                 .map_err(|error| self.section.about("noise", error))?;
         }
         Ok(noise)
-    }
-}
-
-/// Refuses a sum in which a law stands twice: its parameters would have the
-/// same names.
-fn once_each(friction: LawSum) -> Result<LawSum> {
-    let names: Vec<_> = friction.terms().iter().map(|t| t.name()).collect();
-    let twice =
-        names.iter().enumerate().find(|(i, name)| names[..*i].contains(name));
-    match twice {
-        None => Ok(friction),
-        Some((_, name)) => Err(Error::input(format!(
-            "the sum \"{friction}\" has {name:?} twice; expected each law \
-             once: drop one of them"
-        ))),
     }
 }
 

@@ -203,7 +203,7 @@ fn what_would_fail_for_every_event_is_refused_once() {
         let rows = format!("event,{head}\nevent 00,\nevent 01,x\n");
         fs::write(&list, rows).unwrap();
         let column = refused(&list, &[]);
-        assert!(column.contains("list.csv: "), "{column}");
+        assert!(column.contains("list.csv:"), "{column}");
         assert!(column.contains(said), "{column}");
     }
     assert!(!out.exists());

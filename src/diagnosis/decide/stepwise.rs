@@ -71,21 +71,17 @@ struct Tried<'a> {
     found: Option<Pursued<'a>>,
 }
 
-/// Terms before any look at them.
-struct Untried<'a> {
+/// Terms on the way to their fit.
+struct Priced<T> {
     which: Vec<usize>,
     /// What they cost, in ln.
     price: f64,
-    terms: Sought<'a>,
+    terms: T,
 }
 
-/// Terms after a quick look at them.
-struct Look<'a> {
-    which: Vec<usize>,
-    /// What they cost, in ln.
-    price: f64,
-    terms: Combination<'a>,
-}
+/// Before any look at them, and after a quick one.
+type Untried<'a> = Priced<Sought<'a>>;
+type Look<'a> = Priced<Combination<'a>>;
 
 impl Look<'_> {
     /// About what they are worth.
@@ -123,7 +119,7 @@ impl<'a> Stepwise<'a> {
         self.count_noises(&mut best, &mut others)?;
         let Tried { mut chosen, found } = best;
         if let Some(found) = found {
-            chosen.fit = found.fit(self.noisy.program(), Precision::Sharp)?;
+            chosen.fit = found.fit(Precision::Sharp)?;
         }
         chosen.rivals = self.rivals(&chosen, others);
         Ok(chosen)
@@ -153,7 +149,7 @@ impl<'a> Stepwise<'a> {
             }
             let pairs = self.untried(&self.single(term), tried)?;
             let most = parallel::try_map(&pairs, |pair| {
-                Ok(pair.terms.most(self.noisy.program())? - pair.price)
+                Ok(pair.terms.most()? - pair.price)
             })?;
             let pairs = pairs.into_iter().zip(most);
             let pairs = pairs.filter(|(_, most)| *most > worth);
@@ -188,8 +184,7 @@ impl<'a> Stepwise<'a> {
         untried: Vec<Untried<'a>>,
         best: &Chosen,
     ) -> Result<Vec<Tried<'a>>> {
-        let look = |one| self.look(one);
-        let mut left: Vec<Look<'_>> = parallel::try_map(untried, look)?;
+        let mut left = parallel::try_map(untried, look)?;
         left.sort_by(|a, b| b.promise().total_cmp(&a.promise()));
         let mut least = self.worth_of(best);
         let near = RISE * LN_10;
@@ -220,22 +215,14 @@ impl<'a> Stepwise<'a> {
     /// likely: but it puts another law in the place of the one that is asked
     /// about.
     fn tried(&self, look: Look<'a>, hurdle: f64) -> Result<Option<Tried<'a>>> {
-        let Look { which, price, terms } = look;
-        let Some(found) =
-            terms.pursued(self.noisy.program(), hurdle + price)?
-        else {
+        let Priced { which, price, terms } = look;
+        let Some(found) = terms.pursued(hurdle + price)? else {
             return Ok(None);
         };
-        let fit = found.fit(self.noisy.program(), Precision::Fair)?;
+        let fit = found.fit(Precision::Fair)?;
         let chosen = Chosen::new(which, fit);
         let tried = Tried { chosen, found: Some(found) };
         Ok(Some(tried).filter(|one| one.chosen.leaves_friction(self.all)))
-    }
-
-    fn look(&self, untried: Untried<'a>) -> Result<Look<'a>> {
-        let Untried { which, price, terms } = untried;
-        let terms = terms.looked(self.noisy.program())?;
-        Ok(Look { which, price, terms })
     }
 
     /// What a step leads to, with where it is to be looked for.
@@ -247,7 +234,7 @@ impl<'a> Stepwise<'a> {
             &[a, b] => self.pair([a, b], seed)?,
             _ => self.extended(chosen, step, &which, seed)?,
         };
-        Ok(Untried { price: self.price(&which), which, terms })
+        Ok(Priced { price: self.price(&which), which, terms })
     }
 
     fn pair(&self, which: [usize; 2], seed: Seed) -> Result<Sought<'a>> {
@@ -368,6 +355,11 @@ impl<'a> Stepwise<'a> {
         let unlikely: f64 = names.map(|n| self.beforehand.price(n)).sum();
         unlikely + RISE * LN_10 * (which.len() as f64 - 1.0)
     }
+}
+
+fn look(untried: Untried<'_>) -> Result<Look<'_>> {
+    let Priced { which, price, terms } = untried;
+    Ok(Priced { which, price, terms: terms.looked()? })
 }
 
 /// All sets that differ from some terms by one, no name twice in any.

@@ -149,7 +149,7 @@ struct Weighing<'a> {
     seed: Seed,
 }
 
-impl Weighing<'_> {
+impl<'a> Weighing<'a> {
     fn seed_of(&self, i: usize) -> Seed {
         self.seed.child(1 + i as u64)
     }
@@ -178,7 +178,7 @@ impl Weighing<'_> {
         known: f64,
         mut owns: Owns,
         progress: &dyn Progress,
-    ) -> Result<Vec<Prospect>> {
+    ) -> Result<Vec<Prospect<'a>>> {
         let unknown = vec![(); self.catalogue.len()];
         let looked = self.each(unknown, |i, mechanism, ()| {
             let known = self.places.get(i).map_or(&[][..], Vec::as_slice);
@@ -191,7 +191,7 @@ impl Weighing<'_> {
         let least = highest(&looked, known) - self.care.relevant;
         let met = self
             .each(looked.iter().collect(), |_, mechanism, one| {
-                self.met(mechanism, one, least)
+                met(mechanism, one, least)
             })?;
         owns.meet(met.into_iter().flatten());
         if owns.met.is_empty() {
@@ -203,28 +203,11 @@ impl Weighing<'_> {
         })
     }
 
-    /// Where a mechanism has the model's own parameters, with ln of what it
-    /// holds, if that is more than the least.
-    fn met(
-        &self,
-        mechanism: &dyn Mechanism,
-        found: &Prospect,
-        least: f64,
-    ) -> Result<Option<(f64, Met)>> {
-        if found.log() <= least {
-            return Ok(None);
-        }
-        let peak = found.peak(self.program, &[mechanism])?;
-        Ok(peak.map(|(added, own)| {
-            (found.log(), Met::of(mechanism, &added, &own))
-        }))
-    }
-
     /// What is found of each mechanism from what is known of it, in parallel.
     fn each<K: Send, F: Send>(
         &self,
         known: Vec<K>,
-        find: impl Fn(usize, &dyn Mechanism, K) -> Result<F> + Sync,
+        find: impl Fn(usize, &'a dyn Mechanism, K) -> Result<F> + Sync,
     ) -> Result<Vec<F>> {
         let all = self.catalogue.iter().enumerate().zip(known);
         parallel::try_map(all, |((i, mechanism), known)| {
@@ -237,19 +220,18 @@ impl Weighing<'_> {
     /// evidence that is known.
     fn pursued(
         &self,
-        prospects: Vec<Prospect>,
+        prospects: Vec<Prospect<'a>>,
         known: f64,
-    ) -> Result<Vec<Prospect>> {
+    ) -> Result<Vec<Prospect<'a>>> {
         let threshold = highest(&prospects, known) - self.care.relevant;
-        self.each(prospects, |i, mechanism, prospect| {
-            let seed = self.seed_of(i).child(3);
-            prospect.pursued(self.program, &[mechanism], threshold, seed)
+        self.each(prospects, |i, _, prospect| {
+            prospect.pursued(threshold, self.seed_of(i).child(3))
         })
     }
 
     /// How sharply what has such a prospect is worth estimating beside the
     /// best.
-    fn precision(&self, prospect: &Prospect, best: f64) -> Precision {
+    fn precision(&self, prospect: &Prospect<'_>, best: f64) -> Precision {
         let Care { decisive, relevant, .. } = self.care;
         if prospect.may_reach(best - decisive) {
             Precision::Sharp
@@ -263,32 +245,46 @@ impl Weighing<'_> {
     /// Their fits, sharp where they may matter.
     fn fitted(
         &self,
-        prospects: Vec<Prospect>,
+        prospects: Vec<Prospect<'a>>,
         known: f64,
     ) -> Result<Vec<Fit>> {
         let best = highest(&prospects, known);
-        self.each(prospects, |i, mechanism, prospect| {
-            let seed = self.seed_of(i).child(2);
+        self.each(prospects, |i, _, prospect| {
             let precision = self.precision(&prospect, best);
-            prospect.fit(self.program, &[mechanism], precision, seed)
+            prospect.fit(precision, self.seed_of(i).child(2))
         })
     }
 }
 
+/// Where a mechanism has the model's own parameters, with ln of what it
+/// holds, if that is more than the least.
+fn met(
+    mechanism: &dyn Mechanism,
+    found: &Prospect<'_>,
+    least: f64,
+) -> Result<Option<(f64, Met)>> {
+    if found.log() <= least {
+        return Ok(None);
+    }
+    let peak = found.peak()?;
+    Ok(peak
+        .map(|(added, own)| (found.log(), Met::of(mechanism, &added, &own))))
+}
+
 /// The most evidence, in ln, that any promises or that is known.
-fn highest(prospects: &[Prospect], known: f64) -> f64 {
+fn highest(prospects: &[Prospect<'_>], known: f64) -> f64 {
     prospects.iter().map(Prospect::log).fold(known, f64::max)
 }
 
 /// Looks at a single mechanism, from places that are known to be likely, and
 /// with the model's own parameters beginning at each of some places.
-fn single(
-    program: &dyn AnyProgram,
-    mechanism: &dyn Mechanism,
+fn single<'a>(
+    program: &'a dyn AnyProgram,
+    mechanism: &'a dyn Mechanism,
     (owns, known): (&Owns, &[Vec<f64>]),
     care: Care,
     seed: Seed,
-) -> Result<Prospect> {
+) -> Result<Prospect<'a>> {
     let with = With::new(program, &[mechanism]);
     let posterior = Posterior::new(&with)?;
     let mut space = SearchSpace {
@@ -324,13 +320,13 @@ const ALIKE: usize = 2;
 
 /// Looks at a single mechanism once more, with the model's own parameters
 /// beginning where others have them: what both looks find together.
-fn again(
-    program: &dyn AnyProgram,
-    mechanism: &dyn Mechanism,
-    first: Prospect,
+fn again<'a>(
+    program: &'a dyn AnyProgram,
+    mechanism: &'a dyn Mechanism,
+    first: Prospect<'a>,
     owns: &Owns,
     seed: Seed,
-) -> Result<Prospect> {
+) -> Result<Prospect<'a>> {
     let with = With::new(program, &[mechanism]);
     let posterior = Posterior::new(&with)?;
     let mut space = SearchSpace::default();
@@ -352,7 +348,7 @@ fn again(
     let after = 2 * MOST_MET as u64;
     let looking = seed.child(after);
     let second = prospect(program, &[mechanism], backend, looking)?;
-    first.joined(second, &posterior, seed.child(after + 1))
+    first.joined(second, seed.child(after + 1))
 }
 
 /// Where a mechanism is looked for, all other coordinates beginning at those

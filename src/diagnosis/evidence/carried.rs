@@ -46,7 +46,7 @@ impl Move<'_> {
         let (to, with) = (self.to.0, self.mechanisms);
         let backend = beginning_at(starts).quick();
         let found = prospect(to, with, backend, seed.child(0))?;
-        let fit = found.fit(to, with, Precision::Fair, seed.child(1))?;
+        let fit = found.fit(Precision::Fair, seed.child(1))?;
         Ok(fit.log_evidence)
     }
 

@@ -22,6 +22,7 @@ pub(crate) struct Known<'k, 'a> {
 
 /// Mechanisms together, with where they are to be looked for.
 pub(crate) struct Sought<'a> {
+    program: &'a dyn AnyProgram,
     mechanisms: Vec<&'a dyn Mechanism>,
     /// The best known places first.
     space: SearchSpace,
@@ -33,12 +34,9 @@ const BEST_KNOWN: usize = 3;
 
 /// Mechanisms together after a quick look at them.
 pub(crate) struct Combination<'a> {
-    mechanisms: Vec<&'a dyn Mechanism>,
-    /// Where they are looked for.
-    space: SearchSpace,
+    sought: Sought<'a>,
     /// What a quick search found.
-    look: Prospect,
-    seed: Seed,
+    look: Prospect<'a>,
 }
 
 /// How far, in ln, what a search promises may fall short of an evidence.
@@ -54,7 +52,7 @@ impl<'a> Sought<'a> {
     /// # Errors
     /// An improper prior, or a model that fails.
     pub(crate) fn pair(
-        program: &dyn AnyProgram,
+        program: &'a dyn AnyProgram,
         mechanisms: [&'a dyn Mechanism; 2],
         fits: [&Fit; 2],
         open: Option<&[f64]>,
@@ -94,7 +92,7 @@ impl<'a> Sought<'a> {
             space.starts.splice(2..2, at_open);
         }
         space.extend(more);
-        Ok(Self::within(mechanisms.to_vec(), space, seed))
+        Ok(Self::within(program, mechanisms.to_vec(), space, seed))
     }
 
     /// One mechanism more, from the best of those that are known.
@@ -102,7 +100,7 @@ impl<'a> Sought<'a> {
     /// # Errors
     /// As [`Sought::pair`].
     pub(crate) fn extended(
-        program: &dyn AnyProgram,
+        program: &'a dyn AnyProgram,
         known: &Known<'_, 'a>,
         (added, fit): (&'a dyn Mechanism, &Fit),
         seed: Seed,
@@ -120,17 +118,18 @@ impl<'a> Sought<'a> {
         let mut at_open = vec![[before, fit.mechanism(), open].concat()];
         at_open.extend(anywhere(added, before, open, seed.child(1)));
         space.starts.splice(1..1, at_open);
-        Ok(Self::within(mechanisms, space, seed))
+        Ok(Self::within(program, mechanisms, space, seed))
     }
 
     fn within(
+        program: &'a dyn AnyProgram,
         mechanisms: Vec<&'a dyn Mechanism>,
         space: SearchSpace,
         seed: Seed,
     ) -> Self {
         let prior_starts = PRIOR_STARTS * mechanisms.len();
         let space = SearchSpace { prior_starts, ..space };
-        Self { mechanisms, space, seed: seed.child(9) }
+        Self { program, mechanisms, space, seed: seed.child(9) }
     }
 
     /// The most, in ln, that their evidence may be by the peaks near the best
@@ -138,29 +137,34 @@ impl<'a> Sought<'a> {
     ///
     /// # Errors
     /// A model that fails.
-    pub(crate) fn most(&self, program: &dyn AnyProgram) -> Result<f64> {
-        let with = ByEvent::new(program, &self.mechanisms)?;
+    pub(crate) fn most(&self) -> Result<f64> {
+        let with = ByEvent::new(self.program, &self.mechanisms)?;
         let posterior = Posterior::new(&with)?;
         let starts = self.space.starts.iter().take(BEST_KNOWN).cloned();
         let starts = starts.collect();
         let space = SearchSpace { starts, ..SearchSpace::default() };
         let backend = LaplaceMixture::within(space).quick();
         let found = backend.outlook(&posterior, self.seed.child(0))?;
-        Ok(found.log + unseen(program))
+        Ok(found.log + unseen(self.program))
     }
 
     /// After a quick look.
     ///
     /// # Errors
     /// An improper prior, or a model that fails.
-    pub(crate) fn looked(
-        self,
-        program: &dyn AnyProgram,
-    ) -> Result<Combination<'a>> {
-        let Self { mechanisms, space, seed } = self;
-        let quick = LaplaceMixture::within(space.clone()).quick();
-        let look = prospect(program, &mechanisms, quick, seed.child(0))?;
-        Ok(Combination { mechanisms, space, look, seed })
+    pub(crate) fn looked(self) -> Result<Combination<'a>> {
+        let quick = LaplaceMixture::within(self.space.clone()).quick();
+        let look = self.searched(quick, self.seed.child(0))?;
+        Ok(Combination { sought: self, look })
+    }
+
+    /// What such a search finds.
+    fn searched(
+        &self,
+        backend: LaplaceMixture,
+        seed: Seed,
+    ) -> Result<Prospect<'a>> {
+        prospect(self.program, &self.mechanisms, backend, seed)
     }
 }
 
@@ -180,34 +184,24 @@ impl<'a> Combination<'a> {
     ///
     /// # Errors
     /// A model that fails.
-    pub(crate) fn pursued(
-        self,
-        program: &dyn AnyProgram,
-        hurdle: f64,
-    ) -> Result<Option<Pursued<'a>>> {
+    pub(crate) fn pursued(self, hurdle: f64) -> Result<Option<Pursued<'a>>> {
         let least = hurdle - SHORT;
         if self.most() <= least {
             return Ok(None);
         }
-        let (mechanisms, seed) = (&self.mechanisms[..], self.seed);
-        let backend = LaplaceMixture::within(self.space.clone());
-        let found = match self.look.searching(&backend) {
+        let Self { sought, look } = self;
+        let seed = sought.seed;
+        let backend = LaplaceMixture::within(sought.space.clone());
+        let found = match look.searching(&backend) {
             Some(several) => several,
             None => {
-                let with = ByEvent::new(program, mechanisms)?;
-                let posterior = Posterior::new(&with)?;
-                let seed_of = seed.child(3);
-                let found = prospect(program, mechanisms, backend, seed_of)?;
-                found.joined(self.look, &posterior, seed.child(4))?
+                let found = sought.searched(backend, seed.child(3))?;
+                found.joined(look, seed.child(4))?
             }
         };
-        let prospect =
-            found.pursued(program, mechanisms, least, seed.child(2))?;
-        if !prospect.may_reach(least) {
-            return Ok(None);
-        }
-        let mechanisms = self.mechanisms;
-        Ok(Some(Pursued { mechanisms, prospect, seed: seed.child(1) }))
+        let prospect = found.pursued(least, seed.child(2))?;
+        let reaches = prospect.may_reach(least);
+        Ok(reaches.then(|| Pursued { prospect, seed: seed.child(1) }))
     }
 }
 
@@ -221,8 +215,7 @@ fn in_turn(first: &[Vec<f64>], second: &[Vec<f64>]) -> Vec<Vec<f64>> {
 
 /// Mechanisms together after a thorough search.
 pub(crate) struct Pursued<'a> {
-    mechanisms: Vec<&'a dyn Mechanism>,
-    prospect: Prospect,
+    prospect: Prospect<'a>,
     seed: Seed,
 }
 
@@ -231,13 +224,8 @@ impl Pursued<'_> {
     ///
     /// # Errors
     /// A model that fails.
-    pub(crate) fn fit(
-        &self,
-        program: &dyn AnyProgram,
-        precision: Precision,
-    ) -> Result<Fit> {
-        let (mechanisms, seed) = (&self.mechanisms[..], self.seed);
-        self.prospect.fit(program, mechanisms, precision, seed)
+    pub(crate) fn fit(&self, precision: Precision) -> Result<Fit> {
+        self.prospect.fit(precision, self.seed)
     }
 }
 
@@ -254,6 +242,6 @@ pub fn pair(
     seed: Seed,
 ) -> Result<Option<Fit>> {
     let pair = Sought::pair(program, mechanisms, fits, None, seed)?;
-    let found = pair.looked(program)?.pursued(program, hurdle)?;
-    found.map(|found| found.fit(program, Precision::Sharp)).transpose()
+    let found = pair.looked()?.pursued(hurdle)?;
+    found.map(|found| found.fit(Precision::Sharp)).transpose()
 }

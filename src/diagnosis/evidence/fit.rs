@@ -45,7 +45,9 @@ impl Fit {
 
 /// What a search found of a program with mechanisms, before it is estimated.
 #[derive(Debug, Clone)]
-pub(crate) struct Prospect {
+pub(crate) struct Prospect<'a> {
+    program: &'a dyn AnyProgram,
+    mechanisms: Vec<&'a dyn Mechanism>,
     backend: LaplaceMixture,
     searched: Searched,
     log: f64,
@@ -76,7 +78,7 @@ impl Searched {
     }
 }
 
-impl Prospect {
+impl<'a> Prospect<'a> {
     /// About ln of the evidence.
     pub(crate) fn log(&self) -> f64 {
         self.log
@@ -88,15 +90,11 @@ impl Prospect {
     ///
     /// # Errors
     /// A model that fails.
-    pub(crate) fn peak(
-        &self,
-        program: &dyn AnyProgram,
-        mechanisms: &[&dyn Mechanism],
-    ) -> Result<Option<(Vec<f64>, Vec<f64>)>> {
+    pub(crate) fn peak(&self) -> Result<Option<(Vec<f64>, Vec<f64>)>> {
         let Searched::Proposal(frozen) = &self.searched else {
             return Ok(None);
         };
-        let with = ByEvent::new(program, mechanisms)?;
+        let with = self.by_event()?;
         let posterior = Posterior::new(&with)?;
         let mut highest: Option<Peak> = None;
         for start in frozen.mixture.middles().into_iter().take(MIDDLES) {
@@ -146,20 +144,11 @@ impl Prospect {
     ///
     /// # Errors
     /// A model that fails.
-    pub(crate) fn pursued(
-        self,
-        program: &dyn AnyProgram,
-        mechanisms: &[&dyn Mechanism],
-        threshold: f64,
-        seed: Seed,
-    ) -> Result<Self> {
+    pub(crate) fn pursued(self, threshold: f64, seed: Seed) -> Result<Self> {
         match &self.searched {
-            Searched::Proposal(_) => {
-                self.learned(program, mechanisms, threshold, seed)
-            }
+            Searched::Proposal(_) => self.learned(threshold, seed),
             Searched::Highest(_) if self.may_reach(threshold) => {
-                let rough = Precision::Rough;
-                let fit = self.fit(program, mechanisms, rough, seed)?;
+                let fit = self.fit(Precision::Rough, seed)?;
                 let log = fit.log_evidence;
                 let searched = Searched::Estimated(Box::new(fit));
                 Ok(Self { searched, log, ..self })
@@ -170,14 +159,9 @@ impl Prospect {
 
     /// Of one event, after its proposal learned more, as long as it may reach
     /// a threshold.
-    fn learned(
-        mut self,
-        program: &dyn AnyProgram,
-        mechanisms: &[&dyn Mechanism],
-        threshold: f64,
-        seed: Seed,
-    ) -> Result<Self> {
-        let with = ByEvent::new(program, mechanisms)?;
+    fn learned(mut self, threshold: f64, seed: Seed) -> Result<Self> {
+        let mechanisms = self.mechanisms.clone();
+        let with = ByEvent::new(self.program, &mechanisms)?;
         let posterior = Posterior::new(&with)?;
         let most = self.backend.schedule.rounds;
         for rounds in [FEW_ROUNDS + 2, most] {
@@ -200,44 +184,35 @@ impl Prospect {
     ///
     /// # Errors
     /// A model that fails.
-    pub(crate) fn joined(
-        mut self,
-        other: Self,
-        posterior: &Posterior<'_>,
-        seed: Seed,
-    ) -> Result<Self> {
+    pub(crate) fn joined(mut self, other: Self, seed: Seed) -> Result<Self> {
         let both = (&self.searched, other.searched);
         let (Searched::Proposal(first), Searched::Proposal(second)) = both
         else {
             return Ok(self);
         };
         if other.log > self.log {
+            let with = self.by_event()?;
+            let posterior = Posterior::new(&with)?;
             let schedule = &self.backend.schedule;
             let both = second.beside(first);
-            let both = both.learned(posterior, schedule, FEW_ROUNDS, seed)?;
+            let both = both.learned(&posterior, schedule, FEW_ROUNDS, seed)?;
             self.log = both.log;
             self.searched = Searched::Proposal(both);
         }
         Ok(self)
     }
 
-    /// The fit of the same program and mechanisms.
+    /// The fit, as sharp as asked.
     ///
     /// # Errors
     /// A model that fails.
-    pub(crate) fn fit(
-        &self,
-        program: &dyn AnyProgram,
-        mechanisms: &[&dyn Mechanism],
-        precision: Precision,
-        seed: Seed,
-    ) -> Result<Fit> {
+    pub(crate) fn fit(&self, precision: Precision, seed: Seed) -> Result<Fit> {
         if let Searched::Estimated(fit) = &self.searched
             && precision == Precision::Rough
         {
             return Ok(fit.as_ref().clone());
         }
-        let with = ByEvent::new(program, mechanisms)?;
+        let with = self.by_event()?;
         let posterior = Posterior::new(&with)?;
         let backend = &self.backend;
         let found = match &self.searched {
@@ -255,21 +230,19 @@ impl Prospect {
         Ok(fit)
     }
 
-    /// About where the same program and mechanisms are best, on the real line.
+    /// About where it is best, on the real line.
     ///
     /// # Errors
     /// A model that fails.
-    pub(crate) fn best(
-        &self,
-        program: &dyn AnyProgram,
-        mechanisms: &[&dyn Mechanism],
-        seed: Seed,
-    ) -> Result<Vec<f64>> {
-        if let Some(highest) = self.searched.highest() {
-            return Ok(highest.to_vec());
+    pub(crate) fn best(&self, seed: Seed) -> Result<Vec<f64>> {
+        match self.searched.highest() {
+            Some(highest) => Ok(highest.to_vec()),
+            None => Ok(self.fit(Precision::Rough, seed)?.best),
         }
-        let fit = self.fit(program, mechanisms, Precision::Rough, seed)?;
-        Ok(fit.best)
+    }
+
+    fn by_event(&self) -> Result<ByEvent<'_>> {
+        ByEvent::new(self.program, &self.mechanisms)
     }
 }
 
@@ -299,12 +272,16 @@ const FEW_ROUNDS: u64 = 2;
 ///
 /// # Errors
 /// An improper prior, or a model that fails.
-pub(crate) fn prospect(
-    program: &dyn AnyProgram,
-    mechanisms: &[&dyn Mechanism],
+pub(crate) fn prospect<'a>(
+    program: &'a dyn AnyProgram,
+    mechanisms: &[&'a dyn Mechanism],
     backend: LaplaceMixture,
     seed: Seed,
-) -> Result<Prospect> {
+) -> Result<Prospect<'a>> {
+    let of = |log, searched, added, backend| {
+        let mechanisms = mechanisms.to_vec();
+        Prospect { program, mechanisms, backend, searched, log, added }
+    };
     let with = ByEvent::new(program, mechanisms)?;
     let posterior = Posterior::new(&with)?;
     let added = with.added();
@@ -312,13 +289,13 @@ pub(crate) fn prospect(
         let Peaks { log, highest } = backend.outlook(&posterior, seed)?;
         let highest = highest.map(|peak| peak.line.as_slice().to_vec());
         let searched = Searched::Highest(highest);
-        return Ok(Prospect { backend, searched, log, added });
+        return Ok(of(log, searched, added, backend));
     }
     let frozen = backend.searched(&posterior, seed.child(0))?;
     let (schedule, seed) = (&backend.schedule, seed.child(1));
     let frozen = frozen.learned(&posterior, schedule, FEW_ROUNDS, seed)?;
-    let (log, searched) = (frozen.log, Searched::Proposal(frozen));
-    Ok(Prospect { backend, searched, log, added })
+    let log = frozen.log;
+    Ok(of(log, Searched::Proposal(frozen), added, backend))
 }
 
 /// Fits a program with mechanisms, looking for modes as told.
@@ -471,18 +448,18 @@ mod tests {
 
     #[test]
     fn two_searches_together_hold_what_either_found() {
-        let posterior = Posterior::new(&Hills).unwrap();
         let near = |x: f64, log: f64| {
             let searched = Searched::Proposal(proposal_for_hill(x));
-            let backend = LaplaceMixture::default();
-            Prospect { backend, searched, log, added: 0 }
+            let (backend, mechanisms) = (LaplaceMixture::default(), vec![]);
+            let program = &Hills;
+            Prospect { program, mechanisms, backend, searched, log, added: 0 }
         };
         let low = near(-1.0, between(-3.0, 0.0));
         let high = near(1.0, between(0.0, 4.0));
-        let joined = |a: &Prospect, b: &Prospect| {
-            a.clone().joined(b.clone(), &posterior, Seed::new(3)).unwrap()
-        };
-        let at = |one: &Prospect, x: f64| {
+        fn joined<'a>(a: &Prospect<'a>, b: &Prospect<'a>) -> Prospect<'a> {
+            a.clone().joined(b.clone(), Seed::new(3)).unwrap()
+        }
+        let at = |one: &Prospect<'_>, x: f64| {
             let Searched::Proposal(frozen) = &one.searched else {
                 unreachable!()
             };

@@ -10,7 +10,7 @@ use std::f64::consts::LN_10;
 use std::ops::Deref;
 
 use super::carried::carried;
-use super::fit::{Prospect, prospect};
+use super::fit::prospect;
 use crate::diagnosis::locate::{Outlook, no_density, outlook};
 use crate::draws::log_sum_exp;
 use crate::error::Result;
@@ -69,8 +69,9 @@ pub(super) struct Weighed<'a> {
 /// What a noise promises.
 #[derive(Debug)]
 pub(super) struct Found {
-    /// Without physics, and where that is best, on the real line.
-    none: Prospect,
+    /// About ln of its evidence without physics, and where it is best then,
+    /// on the real line.
+    none: f64,
     own: Vec<f64>,
     /// With a force of free form.
     pub(super) open: Outlook,
@@ -97,7 +98,7 @@ impl<'a> Weighed<'a> {
     /// About ln of its evidence in either way: without physics, and with a
     /// force.
     pub(super) fn logs(&self) -> [f64; 2] {
-        [self.found.none.log(), self.found.open.log]
+        [self.found.none, self.found.open.log]
     }
 
     /// A place under it as places under another noise, what that has besides
@@ -215,12 +216,12 @@ impl<'a> Survey<'a, '_> {
         };
         let search = LaplaceMixture::within(space).quick();
         let none = prospect(program, &[], search, seed.child(0))?;
-        let own = none.best(program, &[], seed.child(2))?;
+        let own = none.best(seed.child(2))?;
         let owns = beside.owns(&own, seed.child(5))?;
         let least = f64::NEG_INFINITY;
         let open = outlook(program, self.extent, &owns, least, seed.child(3))?;
         let open = open.ok_or_else(no_density)?;
-        Ok(Found { none, own, open })
+        Ok(Found { none: none.log(), own, open })
     }
 
     /// Looks at each of some noises again, from where a force made another of

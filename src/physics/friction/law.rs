@@ -136,21 +136,8 @@ impl Laws {
         if text.trim() == "none" {
             return Ok(LawSum(Vec::new()));
         }
-        let sum: LawSum = text
-            .split('+')
-            .map(|name| self.find(name.trim()))
-            .collect::<Result<_>>()?;
-        let mut names: Vec<&str> = sum.0.iter().map(|l| l.name()).collect();
-        names.sort_unstable();
-        match names.windows(2).find(|pair| pair[0] == pair[1]) {
-            None => Ok(sum),
-            Some(pair) => Err(Error::input(format!(
-                "friction {} has {} twice; expected each law once: drop one",
-                quoted(text),
-                pair[0]
-            ))
-            .on_page("reference/laws")),
-        }
+        let terms = text.split('+').map(|name| self.find(name.trim()));
+        once_each(terms.collect::<Result<_>>()?)
     }
 
     fn find(&self, name: &str) -> Result<&'static dyn Law> {
@@ -167,6 +154,21 @@ impl Laws {
             ))
             .on_page("reference/laws")
         })
+    }
+}
+
+/// Refuses a sum in which a law stands twice: its parameters would have the
+/// same names.
+fn once_each(friction: LawSum) -> Result<LawSum> {
+    let names: Vec<_> = friction.terms().iter().map(|t| t.name()).collect();
+    let twice =
+        names.iter().enumerate().find(|(i, name)| names[..*i].contains(name));
+    match twice {
+        None => Ok(friction),
+        Some((_, name)) => Err(Error::input(format!(
+            "the sum \"{friction}\" has {name:?} twice; expected each law \
+             once: drop one of them"
+        ))),
     }
 }
 
