@@ -265,6 +265,23 @@ fn each_stretch_of_a_track_is_a_mark_of_its_own_with_its_label() {
 }
 
 #[test]
+fn evidence_over_all_noises_and_residuals_that_are_left_are_told() {
+    let mut d = diagnosis();
+    let said = in_words(&d).join(" ");
+    assert!(said.contains("a log10 Bayes factor of 21.3."), "{said}");
+    assert!(!said.contains("still correlated"), "{said}");
+    d.mechanisms[0].log10_bayes_factor = 3.0;
+    d.improvement.ljung_box_p.after = 0.002;
+    let said = in_words(&d).join(" ");
+    for told in [
+        "a log10 Bayes factor of 3.0 over all noises (21.3 with ",
+        "still correlated (Ljung-Box p < 0.01): its intervals may be too",
+    ] {
+        assert!(said.contains(told), "{said}");
+    }
+}
+
+#[test]
 fn odds_that_were_given_are_told() {
     let mut d = diagnosis();
     let even = "the other half shared evenly. ";

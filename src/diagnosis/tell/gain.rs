@@ -61,8 +61,8 @@ pub(crate) fn correlated(d: &Diagnosis) -> Option<String> {
     let p = d.improvement.ljung_box_p.after;
     (p < CORRELATED).then(|| {
         format!(
-            "Its residuals are still correlated (Ljung-Box p {}): its \
-             intervals may be too narrow.",
+            "The residuals of the corrected model are still correlated \
+             (Ljung-Box p {}): its intervals may be too narrow.",
             p_value(p)
         )
     })
