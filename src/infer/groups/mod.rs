@@ -73,7 +73,7 @@ impl LaplaceMixture {
     /// Explores a posterior by its groups.
     ///
     /// # Errors
-    /// As [`Backend::explore`].
+    /// As [`Backend::explore`](super::Backend::explore).
     pub fn explore_groups(
         &self,
         grouped: &Grouped<'_>,
@@ -86,7 +86,7 @@ impl LaplaceMixture {
     /// The same, as sharp as asked.
     ///
     /// # Errors
-    /// As [`Backend::explore`].
+    /// As [`Backend::explore`](super::Backend::explore).
     pub(crate) fn estimate_groups(
         &self,
         grouped: &Grouped<'_>,
