@@ -75,7 +75,6 @@ def row(folder, rate, noise, d):
         f"{i['rmse_before']:.2f} to {i['rmse_after']:.2f}",
         least_squares(i),
         f"{i['heldout_rmse_before']:.1f} to {i['heldout_rmse_after']:.1f}",
-        f"{d['seconds']:.0f}",
     ]
     return "| " + " | ".join(told) + " |"
 
