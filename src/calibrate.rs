@@ -50,6 +50,28 @@ pub fn calibrate(
     seed: u64,
     progress: &dyn Progress,
 ) -> Result<Calibration> {
+    calibrate_from(model, backend, Seed::new(seed), progress)
+        .map(|found| found.with_seed(seed))
+}
+
+impl Calibration {
+    /// The same of a run of that seed.
+    pub(crate) fn with_seed(mut self, seed: u64) -> Self {
+        self.report.seed = seed;
+        self
+    }
+}
+
+/// The same from a part of a run's seed, which is not told.
+///
+/// # Errors
+/// As [`calibrate`].
+pub(crate) fn calibrate_from(
+    model: &Assembled,
+    backend: &dyn Backend,
+    seed: Seed,
+    progress: &dyn Progress,
+) -> Result<Calibration> {
     let kept = progress.checkpoint();
     let kept = kept.map(|kept| Remembered::new(model, kept, &named(model)));
     let posterior = match &kept {
@@ -64,10 +86,9 @@ fn calibrated(
     model: &Assembled,
     posterior: &Posterior<'_>,
     backend: &dyn Backend,
-    seed: u64,
+    root: Seed,
     progress: &dyn Progress,
 ) -> Result<Calibration> {
-    let root = Seed::new(seed);
     let mut found = infer(backend, posterior, root.child(0), progress)?;
     let draws = draws_of(&found, backend)?;
     let summaries = summaries(&mut found, &draws);
@@ -87,7 +108,6 @@ fn calibrated(
     let prior = prior_predictive(posterior, 1000, times, root.child(4)).ok();
     let mut report = CalibrationReport {
         backend: backend.name().to_owned(),
-        seed,
         parameters: parameters(model, &draws, &summaries, mode.as_ref()),
         simulations,
         prior_bands: prior,

@@ -45,7 +45,8 @@ impl Forced {
 /// A force of free form under one noise.
 struct Located {
     draws: Draws,
-    /// ln of the evidence with it, and without.
+    /// ln of the evidence with it, and without, times the noise's probability
+    /// beforehand.
     logs: [f64; 2],
     differs: bool,
 }
@@ -105,7 +106,8 @@ fn located(one: &Under<'_>, seed: Seed) -> Result<Located> {
     let open = open.ok_or_else(no_density)?;
     Ok(Located {
         draws: open.own,
-        logs: [none.log_evidence + gain, none.log_evidence],
+        logs: [gain, 0.0]
+            .map(|gain| one.beforehand + none.log_evidence + gain),
         differs: likeliest.is_some_and(|force| !force.runs().is_empty()),
     })
 }

@@ -3,7 +3,9 @@
 use std::f64::consts::LN_10;
 
 use super::mix::mixed;
-use crate::calibrate::{Calibration, calibrate, curve, of_summary};
+use crate::calibrate::{
+    Calibration, calibrate, calibrate_from, curve, of_summary,
+};
 use crate::diagnosis::{Fit, Noises, Noisy};
 use crate::draws::{log_sum_exp, summarise};
 use crate::error::{Error, Result};
@@ -12,6 +14,7 @@ use crate::model::{Assembled, Program};
 use crate::report::{
     CalibrationReport, EvidenceReport, NoiseReport, ParameterReport,
 };
+use crate::seed::Seed;
 
 /// The probability below which a noise is not worth a calibration.
 const LEAST: f64 = 1e-3;
@@ -23,6 +26,8 @@ pub(super) struct Under<'a> {
     other: Option<Assembled>,
     /// Its fit as a diagnosis makes it, where that is known.
     pub(super) none: Option<Fit>,
+    /// ln of its probability beforehand, among all noises that were kept.
+    pub(super) beforehand: f64,
     /// Its probability among those that were calibrated.
     pub(super) probability: f64,
     found: Calibration,
@@ -44,8 +49,9 @@ pub(super) fn under_one<'a>(
     progress: &dyn Progress,
 ) -> Result<Under<'a>> {
     let found = calibrate(named, backend, seed, progress)?;
-    let (other, all) = (None, Vec::new());
-    Ok(Under { named, other, none: None, probability: 1.0, found, all })
+    let (other, none, all) = (None, None, Vec::new());
+    let (beforehand, probability) = (0.0, 1.0);
+    Ok(Under { named, other, none, beforehand, probability, found, all })
 }
 
 /// A noise that was kept, with what a calibration under it found.
@@ -97,20 +103,25 @@ pub(super) fn under_each<'a>(
     for one in &mut kept {
         if one.worth() > most + LEAST.ln() {
             let program = one.other.as_ref().unwrap_or(named);
-            let found = calibrate(program, backend, seed, progress)?;
-            one.found = Some(found);
+            // One of its own for each: errors from one seed are alike.
+            let own = Seed::new(seed).called(&one.noisy.name);
+            let found = calibrate_from(program, backend, own, progress)?;
+            one.found = Some(found.with_seed(seed));
         }
     }
     kept.sort_by(|a, b| b.worth().total_cmp(&a.worth()));
     let all = judged(&kept, noises.dropped.as_ref());
     let calibrated = kept.iter().filter(|one| one.found.is_some());
     let total = log_sum_exp(calibrated.map(Kept::worth));
+    let known = kept.iter().map(|one| one.noisy.beforehand());
+    let known = log_sum_exp(known);
     let under = kept.into_iter().filter_map(|one| {
         let probability = (one.worth() - total).exp();
         Some(Under {
             named,
             other: one.other,
             none: Some(one.noisy.none.clone()),
+            beforehand: one.noisy.beforehand() - known,
             probability,
             found: one.found?,
             all: all.clone(),
@@ -257,17 +268,18 @@ fn bare(p: &ParameterReport) -> ParameterReport {
     }
 }
 
-/// The evidence averaged over the noises, each as probable beforehand.
+/// The evidence averaged over all noises that were kept, as each is probable
+/// beforehand; what was not calibrated adds less than its error.
 fn evidence(under: &[Under<'_>]) -> Option<EvidenceReport> {
-    let each: Vec<(f64, EvidenceReport)> = under
+    let each: Vec<(&Under<'_>, &EvidenceReport)> = under
         .iter()
-        .map(|one| Some((one.probability, one.found.report.evidence.clone()?)))
+        .map(|one| Some((one, one.found.report.evidence.as_ref()?)))
         .collect::<Option<_>>()?;
-    let total = log_sum_exp(each.iter().map(|(_, e)| e.value));
-    let square: f64 = each.iter().map(|(p, e)| (p * e.se).powi(2)).sum();
+    let logs = each.iter().map(|(one, e)| one.beforehand + e.value);
+    let square = each.iter().map(|(one, e)| (one.probability * e.se).powi(2));
     Some(EvidenceReport {
-        value: total - (each.len() as f64).ln(),
-        se: square.sqrt(),
+        value: log_sum_exp(logs),
+        se: square.sum::<f64>().sqrt(),
         method: format!("{}, averaged over noises", each.first()?.1.method),
     })
 }

@@ -78,6 +78,11 @@ struct Found {
 }
 
 impl Arguments {
+    /// The events that are named.
+    pub(super) fn paths(&self) -> &[PathBuf] {
+        self.subject.paths()
+    }
+
     pub(super) fn run(
         &self,
         laws: &Laws,
@@ -128,7 +133,8 @@ impl Arguments {
         let Found { found, model } = self.found(laws, progress, typed)?;
         let json = self.json(&found, None);
         let files = self.files(&found, &json, &InferenceData::default())?;
-        Ok(Made { files, data: gathered(&found, &model) })
+        let reads = self.subject.paths().to_vec();
+        Ok(Made { files, reads, data: gathered(&found, &model) })
     }
 
     /// `calibration.json` alone, with draws of the law's parameters.

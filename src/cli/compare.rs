@@ -1,6 +1,8 @@
 //! `couloir compare`: models of one event by their evidence, and by how well
 //! they predict.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use serde_json::{Map, Value, json};
 
@@ -121,12 +123,18 @@ fn ahead(compared: &[Compared]) -> Vec<Predicted<'_>> {
 }
 
 impl Arguments {
+    /// The events that are named.
+    pub(super) fn paths(&self) -> &[PathBuf] {
+        self.subject.paths()
+    }
+
     pub(super) fn run(
         &self,
         laws: &Laws,
         told: &Told,
         typed: &str,
     ) -> Result<Answer> {
+        self.refuse_one_model()?;
         let files = ["comparison.json"];
         let results = self.output.ready(&files, self.subject.paths())?;
         let found = self.found(laws, told, typed)?;
@@ -147,7 +155,21 @@ impl Arguments {
         laws: &Laws,
         progress: &dyn Progress,
     ) -> Result<Value> {
+        self.refuse_one_model()?;
         self.found(laws, progress, "").map(|found| self.json(&found))
+    }
+
+    /// Refuses a law or a noise that would be of no model.
+    fn refuse_one_model(&self) -> Result<()> {
+        let Subject { friction, noise, .. } = &self.subject;
+        let given = [("--friction", friction), ("--noise", noise)];
+        match given.into_iter().find(|(_, given)| given.is_some()) {
+            None => Ok(()),
+            Some((name, _)) => Err(Error::input(format!(
+                "{name} has no effect here; expected laws and noises in \
+                 --model, such as --model \"voellmy, iid\": drop it"
+            ))),
+        }
     }
 
     /// The event's models, compared. All that can be wrong with one of them

@@ -105,6 +105,11 @@ struct Found {
 }
 
 impl Arguments {
+    /// The events that are named.
+    pub(super) fn paths(&self) -> &[PathBuf] {
+        &self.events
+    }
+
     pub(super) fn run(
         &self,
         laws: &Laws,
@@ -159,7 +164,7 @@ impl Arguments {
             data.as_ref().unwrap_or(&none),
         )?;
         files.extend(corrected(&subjects, &labels, &found, laws)?);
-        Ok(Made { files, data })
+        Ok(Made { files, reads: self.events.clone(), data })
     }
 
     /// `diagnosis.json` alone.

@@ -108,7 +108,8 @@ impl Arguments {
         let all = import_all(&self.options())?;
         let files = all.iter().flat_map(Imported::files);
         let files = files.map(|(name, text)| (name.into(), text.into()));
-        Ok(Made { files: files.collect(), data: Ok(InferenceData::default()) })
+        let (files, reads) = (files.collect(), Vec::new());
+        Ok(Made { files, reads, data: Ok(InferenceData::default()) })
     }
 
     fn options(&self) -> Options {

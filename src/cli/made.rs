@@ -25,6 +25,8 @@ pub type Files = Vec<(PathBuf, Vec<u8>)>;
 pub struct Made {
     /// The files that `--out` would have written.
     pub files: Files,
+    /// The events that it was made of: files of theirs are not replaced.
+    pub reads: Vec<PathBuf>,
     /// The draws with what they say of the data, or why there is no such
     /// thing; without a group where there are no draws.
     pub data: Result<InferenceData>,
@@ -41,7 +43,7 @@ impl Made {
         let names: Vec<_> =
             names.map(|(name, _)| name.to_string_lossy()).collect();
         let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
-        prepare_run(folder, &names, &[])?;
+        prepare_run(folder, &names, &self.reads)?;
         write_run(folder, &self.files)
     }
 }
@@ -96,6 +98,17 @@ pub(super) fn document(laws: &Laws, words: &[OsString]) -> Result<Value> {
             typed(words)
         ))),
     }
+}
+
+/// An event that a command's words name.
+pub(super) fn event(laws: &Laws, words: &[OsString]) -> Option<PathBuf> {
+    let events = match parsed_last(laws, words).ok()?.command {
+        Command::Calibrate(of) => of.paths().to_vec(),
+        Command::Compare(of) => of.paths().to_vec(),
+        Command::Diagnose(of) => of.paths().to_vec(),
+        _ => Vec::new(),
+    };
+    events.into_iter().next()
 }
 
 /// What would be refused of a command's words before it does anything, and of

@@ -41,7 +41,8 @@ const FILES: [&str; 2] = ["population.json", "population.csv"];
 
 impl Arguments {
     pub(super) fn run(&self, told: &Told) -> Result<Answer> {
-        let results = self.output.ready(&FILES, &[])?;
+        let reads = [self.sweep.join("sweep.json")];
+        let results = self.output.ready(&FILES, &reads)?;
         let (members, without) = self.members()?;
         let found = pool(&members, Seed::new(self.seed), told)?;
         told.finish();

@@ -67,7 +67,8 @@ impl Arguments {
     pub(super) fn made(&self, laws: &Laws, typed: &str) -> Result<Made> {
         let found = self.found(laws, typed)?;
         let files = files(&found.motion, &pretty(&found.document()));
-        Ok(Made { files, data: Ok(InferenceData::default()) })
+        let reads = self.subject.paths().to_vec();
+        Ok(Made { files, reads, data: Ok(InferenceData::default()) })
     }
 
     /// The motion with the parameters' values.

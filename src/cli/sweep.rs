@@ -12,7 +12,7 @@ use serde_json::Value;
 use super::answer::{Answer, wrapped};
 use super::at_least_one;
 use super::engine::Engine;
-use super::made::{document, refusal};
+use super::made::{document, event, refusal};
 use super::pace::duration;
 use super::progress::Told;
 use super::results::{Results, folder};
@@ -136,8 +136,10 @@ struct Planned {
 impl Arguments {
     pub(super) fn run(&self, laws: &Laws, told: &Told) -> Result<Answer> {
         self.refuse_options()?;
-        let results = Results::ready(Some(&self.out), FILES, &[])?;
         let list = listed(&self.list)?;
+        let events: Vec<PathBuf> =
+            list.iter().map(|one| one.event.clone()).collect();
+        let results = Results::ready(Some(&self.out), FILES, &events)?;
         self.refuse_for_all(laws, &list)?;
         if let Some(engine) = self.engine {
             let most = (list.len() / SHARD).max(1);
@@ -270,6 +272,15 @@ impl Arguments {
             return Err(Error::input(format!(
                 "behind --: {error}; expected options of {verb}, which \
                  couloir {verb} --help lists"
+            )));
+        }
+        let words = [&[verb.into()], &*self.options].concat();
+        if let Some(event) = event(laws, &words) {
+            return Err(Error::input(format!(
+                "behind --: {} is taken for an event; expected options of \
+                 {verb} alone, with = before a value, such as \
+                 --friction=coulomb",
+                place(&event)
             )));
         }
         let mut known = HashSet::new();

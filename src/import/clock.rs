@@ -7,6 +7,20 @@ pub(super) struct Moment {
     pub(super) seconds: f64,
     /// Whether the cell was a clock's time, and not a plain number.
     pub(super) is_clock: bool,
+    /// By how much the cell's clock is ahead of these seconds \[s\].
+    pub(super) ahead: f64,
+}
+
+impl Moment {
+    /// A plain number's.
+    pub(super) fn number(seconds: f64) -> Self {
+        Self { seconds, is_clock: false, ahead: 0.0 }
+    }
+
+    /// Whether it has a date.
+    pub(super) fn is_dated(&self) -> bool {
+        self.is_clock && self.seconds > 2.0 * DAY
+    }
 }
 
 /// Seconds of a day.
@@ -18,12 +32,15 @@ pub(super) fn moment(cell: &str, unit: f64) -> Option<Moment> {
     let cell = cell.trim();
     if let Ok(number) = cell.parse::<f64>() {
         let seconds = number * unit;
-        return seconds
-            .is_finite()
-            .then_some(Moment { seconds, is_clock: false });
+        return seconds.is_finite().then_some(Moment::number(seconds));
     }
+    let mut ahead = 0.0;
     let seconds = match cell.split_once(['T', ' ']) {
-        Some((date, time)) => dated(date.trim(), time.trim())?,
+        Some((date, time)) => {
+            let (seconds, off) = dated(date.trim(), time.trim())?;
+            ahead = -off;
+            seconds
+        }
         None => match numbers(cell, ':')?[..] {
             [h, m, s] => of_day(h, m, s)?,
             [h, m] => of_day(h, m, 0.0)?,
@@ -34,11 +51,12 @@ pub(super) fn moment(cell: &str, unit: f64) -> Option<Moment> {
             _ => return None,
         },
     };
-    Some(Moment { seconds, is_clock: true })
+    Some(Moment { seconds, is_clock: true, ahead })
 }
 
-/// A date and a time, which may end in its distance from Greenwich.
-fn dated(date: &str, time: &str) -> Option<f64> {
+/// A date and a time, which may end in its distance from Greenwich; with what
+/// that distance adds.
+fn dated(date: &str, time: &str) -> Option<(f64, f64)> {
     let day = match date {
         _ if date.contains('-') => numbers(date, '-')?,
         _ if date.contains('/') => numbers(date, '/')?,
@@ -55,7 +73,7 @@ fn dated(date: &str, time: &str) -> Option<f64> {
         }
     };
     let [h, min, s] = numbers(time, ':')?[..] else { return None };
-    Some(days(y, m, d)? * DAY + of_day(h, min, s)? + off)
+    Some((days(y, m, d)? * DAY + of_day(h, min, s)? + off, off))
 }
 
 fn zone(text: &str) -> Option<f64> {

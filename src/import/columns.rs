@@ -62,7 +62,7 @@ impl Columns {
             let column = match self.0.get(&role) {
                 Some(named) => Some(named.find(role, header, &cells)?),
                 None if role.rivals().iter().any(taken) => None,
-                None => known(role, header, &cells),
+                None => known(role, header, &cells)?,
             };
             if let Some(column) = column {
                 found.insert(role, column);
@@ -140,34 +140,47 @@ impl Named {
             ));
         };
         let unit = self.unit.clone().or_else(|| cells[at].1.clone());
-        column(role, at, &cells[at].0, unit.as_deref()).ok_or_else(|| {
-            format!(
-                "the column {} has the unit {}; expected {}: name it as in \
-                 --columns {}={}:{}",
-                quoted(&cells[at].0),
-                quoted(unit.as_deref().unwrap_or_default()),
-                either(&role.units()),
-                role.name(),
-                cells[at].0,
-                role.units()[0]
-            )
-        })
+        column(role, at, &cells[at].0, unit.as_deref())
+            .ok_or_else(|| of_no_unit(role, &cells[at].0, unit.as_deref()))
     }
 }
 
-/// The column of a role by the names that are known, where its unit is.
+/// A column whose unit its role does not have.
+fn of_no_unit(role: Role, name: &str, unit: Option<&str>) -> String {
+    format!(
+        "the column {} has the unit {}; expected {}: name it as in --columns \
+         {}={name}:{}",
+        quoted(name),
+        quoted(unit.unwrap_or_default()),
+        either(&role.units()),
+        role.name(),
+        role.units()[0]
+    )
+}
+
+/// The column of a role by the names that are known, where its unit is. A speed
+/// in a unit that is not known is refused: without it others would be worked
+/// out from the places.
 fn known(
     role: Role,
     header: &[&str],
     cells: &[(String, Option<String>)],
-) -> Option<Column> {
+) -> Result<Option<Column>, String> {
     let simple: Vec<String> = cells.iter().map(|c| simple(&c.0)).collect();
-    role.columns().iter().find_map(|name| {
-        let places = (0..header.len()).filter(|at| simple[*at] == *name);
-        let mut columns = places
-            .filter_map(|at| column(role, at, &cells[at].0, unit(cells, at)));
-        columns.next()
-    })
+    let named = role
+        .columns()
+        .iter()
+        .flat_map(|name| (0..header.len()).filter(|at| simple[*at] == *name));
+    let places: Vec<usize> = named.collect();
+    let of = |at: &usize| column(role, *at, &cells[*at].0, unit(cells, *at));
+    let found = places.iter().find_map(of);
+    let is_speed = matches!(role, Role::Speed | Role::GroundSpeed);
+    match places.first() {
+        Some(&at) if found.is_none() && is_speed => {
+            Err(of_no_unit(role, &cells[at].0, unit(cells, at)))
+        }
+        _ => Ok(found),
+    }
 }
 
 fn unit(cells: &[(String, Option<String>)], at: usize) -> Option<&str> {

@@ -51,11 +51,12 @@ type Header = BTreeMap<String, (usize, f64)>;
 fn header(text: &str) -> Result<(Header, usize), (usize, String)> {
     let mut header = Header::new();
     for (line, text) in (1..).zip(text.lines()) {
-        let begins = text.trim_start().chars().next();
-        if begins.is_some_and(|c| !c.is_ascii_alphabetic()) {
+        let first = text.split_ascii_whitespace().next();
+        // A cell may be "nan".
+        if first.is_some_and(|word| word.parse::<f64>().is_ok()) {
             return Ok((header, line));
         }
-        if begins.is_some() {
+        if first.is_some() {
             let (key, value) = entry(text).map_err(|e| (line, e))?;
             header.insert(key, (line, value));
         }

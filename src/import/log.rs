@@ -110,10 +110,23 @@ impl Log {
                  and no clock's: subtract its first time",
             ));
         }
-        // A time without a date is of the log's first day, or of the night
-        // that follows it.
         let since = moment.seconds - self.begin.seconds;
-        let is_dated = moment.seconds > 2.0 * DAY;
-        Ok(if is_dated { since } else { since.rem_euclid(DAY) })
+        match (moment.is_dated(), self.begin.is_dated()) {
+            (true, true) => Ok(since),
+            (true, false) => Err(wrong(
+                "a time without a date, since the log has none, such as \
+                 07:51:22.5",
+            )),
+            (false, _) => Ok(self.nearest(since - self.begin.ahead)),
+        }
+    }
+
+    /// The time of a clock without a date, in seconds since the log's first row
+    /// but for whole days: of the day that is nearest to the log.
+    fn nearest(&self, since: f64) -> f64 {
+        let last = self.fixes.last().map_or(0.0, |fix| fix.time);
+        let after = since.rem_euclid(DAY);
+        let before = after - DAY;
+        if after - last.max(0.0) <= -before { after } else { before }
     }
 }

@@ -36,6 +36,7 @@ const TIMES: &[(&str, f64)] = &[
     ("ms", 1e-3),
     ("us", 1e-6),
     ("min", 60.0),
+    ("h", 3600.0),
     ("hh:mm:ss", 1.0),
 ];
 const ANGLES: &[(&str, f64)] = &[("deg", 1.0), ("1e-7deg", 1e-7)];
@@ -47,6 +48,7 @@ const SPEEDS: &[(&str, f64)] = &[
     ("cm/s", 1e-2),
     ("km/h", 1.0 / 3.6),
     ("kn", 1852.0 / 3600.0),
+    ("mph", 1609.344 / 3600.0),
 ];
 const COUNTS: &[(&str, f64)] = &[("1", 1.0)];
 
@@ -161,10 +163,10 @@ impl Role {
 
     /// How many of the first unit one of this unit is.
     pub(super) fn factor(self, unit: &str) -> Option<f64> {
-        let unit = unit.trim().replace(' ', "");
+        let unit = unit.trim().replace([' ', '^', '*', '·'], "");
         let unit = match unit.as_str() {
-            "mps" | "m s-1" | "m/sec" => "m/s",
-            "kmh" | "kph" => "km/h",
+            "mps" | "ms-1" | "m/sec" | "M/S" => "m/s",
+            "kmh" | "kph" | "km/hr" | "kmh-1" | "KM/H" => "km/h",
             "°" | "degrees" | "deg." => "deg",
             "sec" | "seconds" => "s",
             "knots" | "kt" => "kn",

@@ -74,6 +74,14 @@ pub(super) fn read(
         // Every line ends in a line feed: the reader stands behind it.
         let line = source.position().line() - 1;
         let record = StringRecord::from_byte_record_lossy(bytes.clone());
+        if record.iter().any(|cell| cell.contains('\n')) {
+            return Err(at(
+                path,
+                line,
+                "a quotation mark is not closed on its line; expected each \
+                 row on one: close the mark, or drop it",
+            ));
+        }
         match &reader {
             None => {
                 let new = Reader::new(path, separator, columns, &record, of);
@@ -293,9 +301,13 @@ impl<'r> Reader<'r> {
             Frame::Along => (number(Role::Along)?, Some(0.0)),
         };
         let (Some(x), Some(y)) = (across, up) else { return Ok(None) };
-        let is_lost = number(Role::FixType)?.is_some_and(|fix| fix < 2.0);
-        // What a receiver writes before it knows where it is.
-        let is_nowhere = self.kind != SpeedKind::Front && (x, y) == (0.0, 0.0);
+        let is_lost =
+            number(Role::FixType)?.is_some_and(|fix| self.is_lost(fix));
+        // What a receiver writes before it knows where it is; on a grid of
+        // metres it is a place as any other.
+        let is_nowhere = self.kind != SpeedKind::Front
+            && self.frame == Frame::Degrees
+            && (x, y) == (0.0, 0.0);
         if is_lost || is_nowhere {
             return Ok(None);
         }
@@ -318,6 +330,15 @@ impl<'r> Reader<'r> {
         let place = (x, y);
         let (row, time) = (0, 0.0);
         Ok(Some(Fix { row, time, place, height, speed, satellites }))
+    }
+
+    /// Whether a kind of fix is none: of u-blox's `fixType` 1 is dead reckoning
+    /// alone, of NMEA's `fix` it is the plain one.
+    fn is_lost(&self, fix: f64) -> bool {
+        let of_ublox = self.found.get(&Role::FixType).is_some_and(|column| {
+            column.name.to_lowercase().contains("fixtype")
+        });
+        fix < if of_ublox { 2.0 } else { 1.0 }
     }
 
     fn speed(&self, record: &StringRecord) -> Result<Option<f64>, String> {
@@ -499,6 +520,40 @@ mod tests {
         let error = read(text, path, &Columns::default(), Of::Front);
         let error = error.unwrap_err().to_string();
         assert!(error.contains("or s (along the path)"), "{error}");
+    }
+
+    #[test]
+    fn an_hour_is_that_of_the_log_on_the_day_nearest_to_it() {
+        let text = "time,x,y\n2022-02-22T08:51:00+01:00,0,0\n\
+                    2022-02-22T08:51:30+01:00,30,0\n";
+        let dated = log(text, "").unwrap();
+        assert_eq!(dated.fixes.len(), 2, "the origin of a grid is a place");
+        let at = |text: &str| dated.moment("--to", text).unwrap();
+        assert_eq!(at("08:51:10"), 10.0);
+        assert_eq!(at("08:50:59"), -1.0);
+        assert_eq!(at("2022-02-22T07:51:20Z"), 20.0);
+        let plain = log("time,x,y\n08:51:00,0,0\n08:51:30,30,0\n", "");
+        let error = plain.unwrap().moment("--to", "2022-02-22 08:51:10");
+        let error = error.unwrap_err().to_string();
+        assert!(error.contains("without a date"), "{error}");
+    }
+
+    #[test]
+    fn what_would_be_lost_in_silence_is_refused() {
+        let rows = "t,lon,lat,fix,note\n0,11.1,47.1,1,\n1,11.1,47.1,0,\n\
+                    2,11.1,47.1,2,\n";
+        // Of a plain fix 1 is one, of u-blox's it is none.
+        assert_eq!(log(rows, "").unwrap().fixes.len(), 2);
+        let ublox = rows.replace("fix", "fixType");
+        assert_eq!(log(&ublox, "").unwrap().fixes.len(), 1);
+        let open = rows.replace("47.1,0,", "47.1,0,\"rough");
+        let error = log(&open, "").unwrap_err().to_string();
+        assert!(error.contains("quotation mark is not closed"), "{error}");
+        let text = "t,lon,lat,speed [furlong/h]\n0,11.1,47.1,1\n";
+        let error = log(text, "").unwrap_err().to_string();
+        assert!(error.contains("has the unit"), "{error}");
+        let text = "t,lon,lat,speed [m s-1]\n0,11.1,47.1,1\n";
+        assert_eq!(log(text, "").unwrap().fixes[0].speed, Some(1.0));
     }
 
     #[test]

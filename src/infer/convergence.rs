@@ -47,8 +47,12 @@ pub(crate) fn convergence(
     let agrees = |s: &&Summary| s.rhat <= HIGHEST_RHAT;
     let least = LEAST_EFFECTIVE * chains as f64;
     let apart = Poor::of(summaries, |s| s.rhat, agrees);
-    let few =
-        Poor::of(summaries, |s| -effective(s), |s| effective(s) >= least);
+    // What has no such number is worse than any.
+    let lacks = |s: &Summary| match effective(s) {
+        none if none.is_nan() => f64::INFINITY,
+        some => -some,
+    };
+    let few = Poor::of(summaries, lacks, |s| effective(s) >= least);
     let mut warnings = Vec::new();
     if let Some(Poor { worst, others }) = apart {
         warnings.push(format!(

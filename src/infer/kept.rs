@@ -38,17 +38,20 @@ pub fn kept(
     Ok(Some(found))
 }
 
-/// What the model keeps at the first draw that it does not reject.
+/// At how many draws a model is asked what it keeps.
+const ASKED: usize = 32;
+
+/// What the model keeps, by the first of some draws that it does not reject and
+/// where it keeps anything.
 fn names(
     posterior: &Posterior<'_>,
     draws: &Draws,
     seed: Seed,
 ) -> Result<Vec<String>> {
-    for row in draws.rows() {
-        let mut kept = Kept::new(seed);
-        let density = posterior.hear(Point::Natural(row), &mut kept)?;
-        if density.rejected.is_none() {
-            return Ok(kept.names);
+    for row in draws.thinned(ASKED) {
+        let one = heard(posterior, row, seed)?;
+        if !one.names.is_empty() && !one.rejected {
+            return Ok(one.names);
         }
     }
     Ok(Vec::new())
@@ -69,9 +72,7 @@ fn check(posterior: &Posterior<'_>, names: &[String]) -> Result<()> {
 fn heard(posterior: &Posterior<'_>, row: &[f64], seed: Seed) -> Result<Kept> {
     let mut kept = Kept::new(seed);
     let density = posterior.hear(Point::Natural(row), &mut kept)?;
-    if density.rejected.is_some() {
-        kept.values.clear();
-    }
+    kept.rejected = density.rejected.is_some();
     Ok(kept)
 }
 
@@ -79,18 +80,21 @@ fn heard(posterior: &Posterior<'_>, row: &[f64], seed: Seed) -> Result<Kept> {
 struct Kept {
     names: Vec<String>,
     values: Vec<f64>,
+    /// Whether the model rejects the draw.
+    rejected: bool,
     rng: Rng,
 }
 
 impl Kept {
     fn new(seed: Seed) -> Self {
-        Self { names: Vec::new(), values: Vec::new(), rng: seed.rng() }
+        let (names, values) = (Vec::new(), Vec::new());
+        Self { names, values, rejected: false, rng: seed.rng() }
     }
 
     /// Its values, which have to be those of the same names; NaN for a draw
     /// that the model rejects, as round-off at a border may let it.
     fn values_of(self, names: &[String]) -> Result<Vec<f64>> {
-        if self.values.is_empty() {
+        if self.rejected {
             return Ok(vec![f64::NAN; names.len()]);
         }
         match self.names == names {

@@ -34,9 +34,14 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>> {
 
 /// The text of a file, without a byte order mark. What is not UTF-8, such as
 /// a degree sign of another encoding in a header, is replaced: it cannot be
-/// part of a number, and a number that it stands in is refused later.
+/// part of a number, and a number that it stands in is refused later. Lines
+/// end in a line feed, however they did in the file.
 pub(crate) fn read_any_text(path: &Path) -> Result<String> {
     let bytes = read_bytes(path)?;
     let text = String::from_utf8_lossy(&bytes);
-    Ok(text.trim_start_matches('\u{feff}').to_owned())
+    let text = text.trim_start_matches('\u{feff}');
+    Ok(match text.contains('\r') {
+        true => text.replace("\r\n", "\n").replace('\r', "\n"),
+        false => text.to_owned(),
+    })
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 use toml_edit::Item;
@@ -42,6 +42,20 @@ pub(crate) fn inputs(
         all.insert(name, sha256(data.as_bytes()));
     }
     Ok(all)
+}
+
+/// The paths of the files that an event, or one file by itself, is read from.
+///
+/// # Errors
+/// A path where there is no event.
+pub(super) fn read_for(path: &Path) -> Result<Vec<PathBuf>> {
+    let file = find(path)?;
+    let names = read_text(&file, MOST_BYTES).and_then(|t| named(&t, &file));
+    let folder = file.parent().unwrap_or(Path::new(""));
+    // A file that is no event names none.
+    let names = names.unwrap_or_default().into_iter();
+    let others: Vec<PathBuf> = names.map(|name| folder.join(name)).collect();
+    Ok([vec![file.clone()], others].concat())
 }
 
 /// The files that an event.toml names.

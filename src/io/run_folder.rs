@@ -5,13 +5,12 @@
 //! is not on it, or is no longer as it was written, is somebody else's: it is
 //! neither replaced nor removed.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fs;
 use std::io::Write;
 use std::path::{Component, Path, PathBuf};
 
-use super::event_file::find;
-use super::inputs::sha256;
+use super::inputs::{read_for, sha256};
 use super::words::place;
 use super::write::{
     Content, put_in_place, summed_draft, try_folder, write_all,
@@ -32,7 +31,7 @@ type Listed = BTreeMap<String, BTreeSet<String>>;
 /// Looks, before the work, at the folder that results are to go to: whether it
 /// can be made and written, and whether what is there may be replaced. Nothing
 /// of it stays. `names` are those of the results, with `/` behind the name of
-/// a folder; `events` are what the run reads.
+/// a folder; `events` are what the run reads, with the files that they name.
 ///
 /// # Errors
 /// An input error where a file is in the way that couloir did not write, or
@@ -46,10 +45,7 @@ pub(crate) fn prepare_run(
     let listed = read_list(folder)?;
     let names = names.iter().map(|name| (*name).to_owned());
     refuse_foreign(folder, names, &listed)?;
-    for event in events {
-        refuse_read(folder, event, &listed)?;
-    }
-    Ok(())
+    refuse_read(folder, events, &listed)
 }
 
 /// Writes the results of a run into a folder, in place of all that an earlier
@@ -220,23 +216,33 @@ fn in_the_way(path: &Path) -> Error {
     ))
 }
 
-/// Refuses to replace an event that the run reads.
-fn refuse_read(folder: &Path, event: &Path, listed: &Listed) -> Result<()> {
-    let Ok(event) = find(event).and_then(|file| canonical(&file)) else {
-        // The event's own error is told where it is read.
+/// Refuses to replace what the run reads: events with the files that they name,
+/// or files.
+fn refuse_read(
+    folder: &Path,
+    events: &[PathBuf],
+    listed: &Listed,
+) -> Result<()> {
+    let written = listed.keys().filter_map(|name| {
+        canonical(&folder.join(name)).ok().map(|path| (path, name))
+    });
+    let written: HashMap<PathBuf, &String> = written.collect();
+    if written.is_empty() {
         return Ok(());
-    };
-    let is_it = |name: &&String| {
-        canonical(&folder.join(name)).is_ok_and(|path| path == event)
-    };
-    match listed.keys().find(is_it) {
-        None => Ok(()),
-        Some(name) => Err(Error::input(format!(
-            "{}: an earlier run wrote this event, and this run would read it \
-             and put its results in its place: give another --out",
-            place(&folder.join(name))
-        ))),
     }
+    for event in events {
+        // Its own error is told where it is read.
+        let read = read_for(event).unwrap_or_default();
+        let mut read = read.iter().filter_map(|path| canonical(path).ok());
+        if let Some(name) = read.find_map(|path| written.get(&path)) {
+            return Err(Error::input(format!(
+                "{}: an earlier run wrote this file, and this run would read \
+                 it and put its results in its place: give another --out",
+                place(&folder.join(name))
+            )));
+        }
+    }
+    Ok(())
 }
 
 fn canonical(path: &Path) -> Result<PathBuf> {
@@ -329,9 +335,17 @@ mod tests {
         write_run(&folder, &files(&["corrected/event.toml"])).unwrap();
         prepare_run(&folder, &["a.json"], &[]).unwrap();
         let event = folder.join("corrected/event.toml");
-        let reads = [event.clone()];
-        let read = prepare_run(&folder, &["a.json"], &reads).unwrap_err();
-        assert!(read.to_string().contains("give another --out"), "{read}");
+        // By itself, and by an event elsewhere that names it.
+        let other = fresh("reads");
+        fs::create_dir_all(&other).unwrap();
+        let text = format!("[track]\nfile = {:?}\n", event.display());
+        fs::write(other.join("event.toml"), text).unwrap();
+        for reads in [event.clone(), other.clone()] {
+            let read = prepare_run(&folder, &["a.json"], &[reads]);
+            let said = read.unwrap_err().to_string();
+            assert!(said.contains("give another --out"), "{said}");
+        }
+        fs::remove_dir_all(&other).unwrap();
         fs::write(&event, "edited").unwrap();
         assert!(prepare_run(&folder, &["a.json"], &[]).is_err());
         assert!(write_run(&folder, &files(&["a.json"])).is_err());

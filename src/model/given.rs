@@ -54,7 +54,7 @@ impl<K: Kind> Run<'_, K> {
             None => self.scalar(label, prior),
             Some(value) => {
                 self.observe_each(&value, prior)?;
-                Ok(Real::new(value))
+                Ok(Real::new(self.made().unwrap_or(value)))
             }
         }
     }

@@ -64,6 +64,12 @@ pub trait Listener<K: Kind> {
         true
     }
 
+    /// What stands in the place of the value just met, where the listener
+    /// replaces data.
+    fn made(&self) -> Option<f64> {
+        None
+    }
+
     /// One value was scored by itself.
     fn element(
         &mut self,

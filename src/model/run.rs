@@ -241,10 +241,16 @@ impl<'r, K: Kind> Run<'r, K> {
                 return Err(Stop::Reject("nothing more is asked of the run"));
             }
         }
-        if log_density.value() == f64::NEG_INFINITY {
+        if log_density.value() == f64::NEG_INFINITY && !self.looks_around() {
             return Err(Stop::Reject("a parameter lies outside its prior"));
         }
         Ok(x)
+    }
+
+    /// Whether the run only tells what there is: a middle may lie in a gap of
+    /// its prior, and what comes after it is asked for all the same.
+    fn looks_around(&self) -> bool {
+        matches!(self.source, Source::Middle)
     }
 
     #[inline]
@@ -426,6 +432,12 @@ impl<'r, K: Kind> Run<'r, K> {
         }
     }
 
+    /// What was made in the place of the datum just met, where data are made
+    /// and not scored: what depends on it depends on that.
+    pub(super) fn made(&self) -> Option<f64> {
+        self.listener.as_ref().and_then(|listener| listener.made())
+    }
+
     /// Scores each of the data against one distribution.
     ///
     /// # Errors
@@ -450,7 +462,8 @@ impl<'r, K: Kind> Run<'r, K> {
                 self.log_likelihood += log_density;
             }
         }
-        if self.log_likelihood.value() == f64::NEG_INFINITY {
+        let is_impossible = self.log_likelihood.value() == f64::NEG_INFINITY;
+        if is_impossible && !self.looks_around() {
             return Err(Stop::Reject("a value lies outside its distribution"));
         }
         Ok(())

@@ -11,8 +11,9 @@ impl Event {
             return self.extent_of(&[], 1.0, true);
         };
         let times = series.times();
+        // The mean over a window is one of speeds.
         let averages =
-            series.quantity() != Quantity::Position && series.window() == 0.0;
+            series.quantity() == Quantity::Velocity && series.window() == 0.0;
         let speeds = self.speeds();
         let mut extent =
             self.extent_of(&speeds, series.grid().step(), averages);

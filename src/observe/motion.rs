@@ -85,15 +85,16 @@ impl Event {
         &self,
         change: &'c Change<K>,
     ) -> Cow<'c, Forces<K>> {
-        if change.forces.step.is_finite() {
-            return match self.clock() {
-                0.0 => Cow::Borrowed(&change.forces),
-                clock => Cow::Owned(change.forces.clone().sooner(clock)),
-            };
+        let forces = match self.clock() {
+            0.0 => Cow::Borrowed(&change.forces),
+            clock => Cow::Owned(change.forces.clone().sooner(clock)),
+        };
+        if forces.step.is_finite() {
+            return forces;
         }
         let last = self.samples().last().copied().filter(|last| *last > 0.0);
         let step = last.unwrap_or(1.0) / STEPS;
-        Cow::Owned(Forces { step, ..change.forces.clone() })
+        Cow::Owned(Forces { step, ..forces.into_owned() })
     }
 
     /// The release under a change.

@@ -126,6 +126,7 @@ impl<'a, K: Kind, L: Friction<K>> SpeedWalker<'a, K, L> {
             if leg.fitted.jumps()
                 && let Some((leg, length)) = self.over_jump(&leg, push, left)
             {
+                self.arrives = false;
                 return self.take(leg, length);
             }
             self.decay = leg.nearest.force.c;

@@ -9,7 +9,7 @@
 use super::ahead::Ahead;
 use super::defect::Defect;
 use super::exact::{End, Force, Pace};
-use super::forces::{Axis, Forces, Moment, NEAR, nearer};
+use super::forces::{Axis, Forces, Moment, NEAR, Term, nearer};
 use super::friction::{Friction, Rate, Varies};
 use super::motion::{
     NO_BRAKING, Path, Release, Rest, State, Walker, first_piece, follow,
@@ -24,6 +24,10 @@ use crate::scalar::{Kind, Real};
 /// 30 m/s are right to 1 mm/s then (`tests/physics/changed_motion.rs`). Beyond
 /// 2.5 stages of third order are not stable.
 const STIFF: f64 = 0.25;
+/// At which speeds a law that varies with the speed is asked how stiff it is,
+/// and over how much of the speed \[m/s\]: most are where the mass is slow.
+const LOOKED_AT: [f64; 4] = [0.0, 1.0, 3.0, 10.0];
+const ASIDE: f64 = 0.1;
 /// How often a step of time is halved at the most: a mass that is braked more
 /// than the last one bears hardly moves.
 const MOST_HALVED: u32 = 6;
@@ -148,16 +152,39 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
         let here = Moment { place: at.into(), time: time.into(), speed };
         self.added = self.forces.even(&here);
         if self.bends {
-            self.step = step(self.forces, self.uniform.as_ref());
+            self.step = step(self.forces, self.stiffness_of_law());
         }
+        // What presses a mass into a bend is asked for where it varies.
+        let presses = |term: &Term<K>| !term.rate.pressed.is_constantly_zero();
+        let is_simple = self.carries && !self.forces.varying().any(presses);
         let base = self
             .uniform
-            .filter(|_| self.carries)
+            .filter(|_| is_simple)
             .and_then(|law| Resistance::of(&(law + self.added)));
         self.base = base.filter(|base| self.bends || !base.is_linear());
         let even = base.filter(|_| !self.varies);
         self.even = even.and_then(|base| Even::of(&base, &self.tilt));
         self.ahead.forget();
+    }
+
+    /// About how much more the law brakes a mass the faster it is, at the most
+    /// \[1/s\], beside what grows with the square of the speed.
+    fn stiffness_of_law(&self) -> f64 {
+        if let Some(rate) = &self.uniform {
+            return rate.linear.value().abs();
+        }
+        if self.law.varies() != Varies::WithSpeed {
+            return 0.0;
+        }
+        let site = self.path.site(self.index, self.begins.value());
+        let brakes = |speed: f64| {
+            let rate = self.law.rate(&site, Real::new(speed));
+            let [mu, constant, linear] = [rate.mu, rate.constant, rate.linear];
+            (mu * site.load + constant).value() + linear.value() * speed
+        };
+        let slope = |from: f64| (brakes(from + ASIDE) - brakes(from)) / ASIDE;
+        let speeds = LOOKED_AT.into_iter().chain([self.pace.u.value()]);
+        speeds.map(|speed| slope(speed).abs()).fold(0.0, f64::max)
     }
 
     /// The depth from a time on, and until when that holds.
@@ -588,8 +615,7 @@ impl<'a, K: Kind> ChangedWalker<'a, K> {
 }
 
 /// The step of the forces, halved until it suits how stiff they and the law are.
-fn step<K: Kind>(forces: &Forces<K>, law: Option<&Rate<K>>) -> f64 {
-    let law = law.map_or(0.0, |rate| rate.linear.value().abs());
+fn step<K: Kind>(forces: &Forces<K>, law: f64) -> f64 {
     let stiffness = law + forces.stiffness();
     let mut step = forces.step;
     for _ in 0..MOST_HALVED {

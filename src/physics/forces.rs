@@ -115,7 +115,7 @@ impl Range {
         } else {
             ((x + NEAR - self.begin) / step).floor() + 1.0
         };
-        (next <= cells).then_some(self.begin + next * step)
+        beyond(x, next, cells, |next| self.begin + next * step)
     }
 
     /// Where the stair is on which `x` lies, counted from 0 and not whole.
@@ -127,14 +127,26 @@ impl Range {
     /// first are the shortest.
     fn next_stair(&self, x: f64) -> Option<f64> {
         let next = self.stair(x + NEAR).floor() + 1.0;
-        let at = self.begin + self.span * (next / STAIRS).powi(2);
-        (next <= STAIRS).then_some(at)
+        let at = |next: f64| self.begin + self.span * (next / STAIRS).powi(2);
+        beyond(x, next, STAIRS, at)
     }
 
     /// How long a leg from `x` on may be.
     fn tread(&self, x: f64) -> f64 {
         self.span * (2.0 * self.stair(x) + 1.0) / STAIRS.powi(2)
     }
+}
+
+/// Where a border is, or the one behind it where it is not beyond `x`: far from
+/// zero round-off is more than `NEAR`.
+fn beyond(
+    x: f64,
+    next: f64,
+    last: f64,
+    at: impl Fn(f64) -> f64,
+) -> Option<f64> {
+    let next = if at(next) > x { next } else { next + 1.0 };
+    (next <= last).then(|| at(next))
 }
 
 /// One force that a change adds.
@@ -295,7 +307,9 @@ impl<K: Kind> Term<K> {
             self.shape,
             Shape::WithSpeed(_) | Shape::Cells(Axis::Speed, ..)
         );
-        of_speed || !self.rate.linear.is_constantly_zero()
+        let along_speed =
+            self.steadily().is_some_and(|(axis, _)| axis == Axis::Speed);
+        of_speed || along_speed || !self.rate.linear.is_constantly_zero()
     }
 }
 
@@ -422,5 +436,27 @@ impl<K: Kind> Forces<K> {
         self.terms
             .iter()
             .fold(None, |next, term| nearer(next, term.next(axis, x)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_border_is_beyond_however_far_from_zero() {
+        for begin in [0.0, 1e3, 2e7, 5e7] {
+            let range = Range { begin, span: 700.0 };
+            let walks = |next: &dyn Fn(f64) -> Option<f64>| {
+                let (mut at, mut count) = (begin, 0);
+                while let Some(next) = next(at) {
+                    assert!(next > at, "{begin}: {next}");
+                    (at, count) = (next, count + 1);
+                }
+                count
+            };
+            assert_eq!(walks(&|x| range.next_stair(x)), STAIRS as usize);
+            assert_eq!(walks(&|x| range.border(x, 24.0)), 24);
+        }
     }
 }

@@ -184,6 +184,15 @@ fn bands(pairs: &[&Pair], times: &[f64]) -> Result<Bands> {
     if pairs.is_empty() {
         return Err(Error::inference("no draw has a flow to predict with"));
     }
+    if let Some((flow, _)) = pairs.iter().find(|(f, _)| f.len() != times.len())
+    {
+        return Err(Error::input(format!(
+            "{} times of a series of {} values; expected the times at which \
+             the model is compared with it",
+            times.len(),
+            flow.len()
+        )));
+    }
     let mut result = Bands { times: times.to_vec(), ..Bands::default() };
     let mut flow = vec![0.0; pairs.len()];
     let mut full = flow.clone();
@@ -353,6 +362,10 @@ impl Listener<Plain> for Made<'_> {
 
     fn scores(&self) -> bool {
         false
+    }
+
+    fn made(&self) -> Option<f64> {
+        self.made.elements.last().copied()
     }
 }
 

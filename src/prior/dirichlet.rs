@@ -80,7 +80,18 @@ impl<K: Kind> Joint<K> for Dirichlet<K> {
         let sizes = logs.iter().map(|log| (log - largest).exp());
         let sizes = sizes.collect::<List<f64>>();
         let total: f64 = sizes.iter().sum();
-        Some(sizes.iter().map(|size| size / total).collect())
+        // A share that rounds to nothing, or to all that is left, is none.
+        let mut left = 1.0_f64;
+        let mut inside = |size: &f64| {
+            let most = left.next_down().max(f64::MIN_POSITIVE);
+            let share = (size / total).clamp(f64::MIN_POSITIVE, most);
+            left -= share;
+            share
+        };
+        let (_, first) = sizes.split_last()?;
+        let mut shares: List<f64> = first.iter().map(&mut inside).collect();
+        shares.push(left);
+        Some(shares)
     }
 }
 

@@ -8,8 +8,9 @@ use super::{CalibrationReport, LawReport, ParameterReport};
 
 /// The largest R-hat of chains that agree (Vehtari and others, 2021).
 const RHAT_AGREES: f64 = 1.01;
-/// The smallest effective sample size to trust quantiles with (ibid.).
-const ESS_ENOUGH: f64 = 400.0;
+/// The smallest effective sample size to trust quantiles with, for each chain
+/// (ibid.).
+const ESS_ENOUGH: f64 = 100.0;
 /// The level of the residual tests.
 const LEVEL: f64 = 0.05;
 /// How many parameters a sentence lists.
@@ -146,9 +147,14 @@ fn error_clause(p: &ParameterReport, noise: &str, unit: &str) -> String {
         (false, true) => "the errors",
         (_, false) => "the innovations of the errors",
     };
+    // With heavy tails it is the scale of a Student-t distribution.
+    let what = match noise.contains("tails") {
+        true => "scale",
+        false => "standard deviation",
+    };
     let deviation = |of: &str, root: fn(f64) -> f64| {
         format!(
-            "{of} have a standard deviation of {} {unit} ({} to {})",
+            "{of} have a {what} of {} {unit} ({} to {})",
             significant(root(p.q50), 2),
             significant(root(p.q05), 2),
             significant(root(p.q95), 2)
@@ -163,6 +169,11 @@ fn error_clause(p: &ParameterReport, noise: &str, unit: &str) -> String {
             format!("smooth errors are alike over {}", estimate(p, false))
         }
         "time_ou" => format!("their memory lasts {}", estimate(p, false)),
+        "phi" if noise.contains('+') => format!(
+            "errors with a memory have a correlation of {} from one value to \
+             the next",
+            estimate(p, false)
+        ),
         "phi" => format!(
             "the errors' correlation from one value to the next is {}",
             estimate(p, false)
@@ -194,7 +205,7 @@ fn chains(report: &CalibrationReport) -> String {
     let known = |f: fn(&ParameterReport) -> f64| {
         let all =
             report.parameters.iter().map(move |p| (f(p), p.name.as_str()));
-        all.filter(|(v, _)| v.is_finite())
+        all.filter(|(v, _)| !v.is_nan())
     };
     let order = |a: &(f64, &str), b: &(f64, &str)| a.0.total_cmp(&b.0);
     let rhat = known(|p| p.rhat).max_by(order);
@@ -202,15 +213,23 @@ fn chains(report: &CalibrationReport) -> String {
     let (Some(rhat), Some(ess)) = (rhat, ess) else {
         return "Whether the chains agree is not known.".to_owned();
     };
-    let verdict = match (rhat.0 <= RHAT_AGREES, ess.0 >= ESS_ENOUGH) {
+    let chains = report.parameters.iter().map(|p| p.chains.len()).max();
+    let enough = ESS_ENOUGH * chains.unwrap_or(1).max(1) as f64;
+    let verdict = match (rhat.0 <= RHAT_AGREES, ess.0 >= enough) {
         (true, true) => "The chains agree",
         (true, false) => "The chains agree but are short: run longer",
         (false, _) => "The chains do not agree, so do not use this result",
     };
     format!(
-        "{verdict}: the largest R-hat is {:.3} ({}), the smallest effective \
+        "{verdict}: the largest R-hat is {} ({}), the smallest effective \
          sample size {:.0} ({}).",
-        rhat.0, rhat.1, ess.0, ess.1
+        match rhat.0.is_finite() {
+            true => format!("{:.3}", rhat.0),
+            false => "infinite".to_owned(),
+        },
+        rhat.1,
+        ess.0,
+        ess.1
     )
 }
 

@@ -121,6 +121,14 @@ fn replication(
         Error::input(format!("backend {} yields no draws", backend.name()))
     })?;
     let rows = draws.thinned(AMONG);
+    if rows.len() < AMONG {
+        return Err(Error::input(format!(
+            "backend {} yields {} draws; expected {AMONG} at least, among \
+             which the true value has its rank: ask it for more",
+            backend.name(),
+            rows.len()
+        )));
+    }
     let below = |i: usize| rows.iter().filter(|row| row[i] < truth[i]).count();
     let mut ranks: Vec<usize> = (0..truth.len()).map(below).collect();
     let right = remade(&seen)?;

@@ -154,14 +154,16 @@ impl<K: Kind> Real<K> {
     #[inline(always)]
     pub fn powi(self, n: i32) -> Self {
         let x = self.value();
-        self.chain(x.powi(n), f64::from(n) * x.powi(n - 1))
+        let slope = if n == 0 { 0.0 } else { f64::from(n) * x.powi(n - 1) };
+        self.chain(x.powi(n), slope)
     }
 
     /// Real power with a constant exponent.
     #[inline(always)]
     pub fn powf(self, p: f64) -> Self {
         let x = self.value();
-        self.chain(x.powf(p), p * x.powf(p - 1.0))
+        let slope = if p == 0.0 { 0.0 } else { p * x.powf(p - 1.0) };
+        self.chain(x.powf(p), slope)
     }
 
     /// c\[0\] + x c\[1\] + x^2 c\[2\] + ... at x = self.

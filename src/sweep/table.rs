@@ -7,6 +7,7 @@ use csv::{ReaderBuilder, StringRecord, Trim};
 
 use crate::error::{Error, Result};
 use crate::io::place;
+use crate::spelling::quoted;
 
 /// The column with the paths.
 const EVENT: &str = "event";
@@ -15,12 +16,21 @@ const EVENT: &str = "event";
 /// their names.
 pub(super) fn of_csv(list: &Path) -> Result<Vec<(PathBuf, Vec<OsString>)>> {
     let wrong = |error: csv::Error| broken(list, &error);
-    let mut reader = ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .trim(Trim::All)
-        .from_path(list)
-        .map_err(wrong)?;
+    let mut reader =
+        ReaderBuilder::new().trim(Trim::All).from_path(list).map_err(wrong)?;
     let head = reader.headers().map_err(wrong)?.clone();
+    let twice = head.iter().enumerate();
+    let twice =
+        twice.filter(|(i, name)| head.iter().take(*i).any(|n| n == *name));
+    if let Some((_, name)) = twice.map(|(i, name)| (i, name.to_owned())).next()
+    {
+        return Err(Error::input(format!(
+            "{}:1: two columns are called {}; expected each once: drop or \
+             rename one",
+            place(list),
+            quoted(&name)
+        )));
+    }
     if !head.iter().any(|name| name == EVENT) {
         return Err(Error::input(format!(
             "{}:1: no column is called event; expected one, with the path of \

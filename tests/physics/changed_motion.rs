@@ -196,6 +196,19 @@ fn a_mass_that_a_drag_by_stages_never_stops_is_told_at_once() {
 }
 
 #[test]
+fn a_law_that_weakens_at_once_is_asked_for_as_often_as_it_needs() {
+    // Most of it is gone at 3 m/s, and the recording is long.
+    let at = times(80.0);
+    let (law, values) = ("velocity-weakening", [0.4, 0.4, 1.0]);
+    let none = Rate { constant: Real::new(0.0), ..Rate::default() };
+    let mut forces = of(none, Stretch::Everywhere, Shape::Even);
+    forces.step = 80.0 / 40.0;
+    let found = changed(&bent(), law, &values, &forces, &at);
+    let worst = worst(&found, &plain(&bent(), law, &values, &at));
+    assert!(worst < 2e-3, "{worst}");
+}
+
+#[test]
 fn viscous_drag_by_stages_is_the_exact_law() {
     let at = times(20.0);
     let rate = Rate { linear: Real::new(0.06), ..Rate::default() };

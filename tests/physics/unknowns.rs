@@ -3,10 +3,12 @@
 
 use std::f64::consts::PI;
 
+use couloir::draws::Draws;
 use couloir::infer::{LaplaceMixture, kept};
 use couloir::model::Weights;
 use couloir::ode;
 use couloir::prelude::*;
+use couloir::scalar::Plain;
 
 /// ln of the standard normal density.
 fn ln_normal(x: f64, mean: f64, sd: f64) -> f64 {
@@ -292,5 +294,71 @@ fn shares_of_trials_have_the_evidence_of_the_beta_binomial() {
         let known = ln_binomial(10, y) + ln_beta(2.0 + won, 3.0 + lost)
             - ln_beta(2.0, 3.0);
         check_evidence(&Successes::new(y, 10.0), known);
+    }
+}
+
+model! {
+    struct Gap { seen: [f64; 2] }
+    mu ~ Mixture([0.5, 0.5], [Uniform(0.1, 0.2), Uniform(0.3, 0.4)]);
+    top ~ HalfNormal(10.0);
+    x[i in 0..2] ~ Uniform(0.0, top) given seen[i];
+    last ~ Exponential(1.0);
+    likelihood {
+        log_density += 0.0 * (mu + last + x[0]);
+    }
+}
+
+#[test]
+fn a_prior_with_a_gap_in_its_middle_hides_nothing_behind_it() {
+    // 0.25, the middle of mu, is in the gap, and 3 is above that of `top`.
+    let model = Gap::new([3.0, f64::NAN]);
+    let posterior = Posterior::new(&model).unwrap();
+    let names = posterior.parameters().iter().map(|p| p.name.as_str());
+    assert_eq!(names.collect::<Vec<_>>(), ["mu", "top", "x[1]", "last"]);
+}
+
+#[test]
+fn what_depends_on_a_datum_is_simulated_from_the_one_that_was_made() {
+    let model = Walk::new(vec![Some(0.0); 4000]);
+    let made = simulate(&model, &[0.5], Seed::new(1)).unwrap().elements;
+    let steps = made[..4000].windows(2).map(|pair| pair[1] - pair[0]);
+    let sd = (steps.map(|d| d * d).sum::<f64>() / 3999.0).sqrt();
+    // Of 4000 steps their sd is known to 0.006; were each made beside the
+    // datum and not the one made before, it would be 0.7.
+    assert!((sd - 0.5).abs() < 0.03, "{sd}");
+}
+
+model! {
+    struct Sometimes { seen: [f64; 1] }
+    mu ~ Normal(0.0, 1.0);
+    likelihood {
+        if mu.value() > 0.0 {
+            keep big = mu;
+        }
+        seen[0] ~ Normal(mu, 1.0);
+    }
+}
+
+#[test]
+fn what_is_kept_at_some_draws_alone_is_refused() {
+    let model = Sometimes::new([0.0]);
+    let posterior = Posterior::new(&model).unwrap();
+    for first in [-1.0, 1.0] {
+        let mut draws =
+            Draws::new(vec!["mu".into()], vec!["1".into()]).unwrap();
+        draws.push_chain(vec![first, -first, 0.5, -0.5], None).unwrap();
+        let error = kept(&posterior, &draws, Seed::new(1)).unwrap_err();
+        assert!(error.to_string().contains("other quantities"), "{error}");
+    }
+}
+
+#[test]
+fn shares_that_are_nearly_nothing_are_still_inside() {
+    let prior =
+        couloir::prior::Dirichlet::new([0.02; 3].map(Real::<Plain>::new));
+    let mut rng = Seed::new(1).rng();
+    for _ in 0..2000 {
+        let shares = couloir::prior::Joint::draw(&prior, 3, &mut rng).unwrap();
+        assert!(shares.iter().all(|x| *x > 0.0 && *x < 1.0), "{shares:?}");
     }
 }

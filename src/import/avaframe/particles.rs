@@ -174,7 +174,7 @@ fn log(
         fixes: (1..).zip(fixes).map(fix).collect(),
         frame: if is_front { Frame::Along } else { Frame::Metres },
         kind: if is_front { SpeedKind::Front } else { SpeedKind::Along },
-        begin: Moment { seconds: begin, is_clock: false },
+        begin: Moment::number(begin),
         is_simulated: true,
         said,
         doubts,

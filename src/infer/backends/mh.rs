@@ -209,6 +209,13 @@ impl<'p, 'm> Walk<'p, 'm> {
         });
         let mut log_scale = best_log_scale(n);
         if let Proposal::Fixed(given) = proposal {
+            if given.shape() != (n, n) {
+                let (rows, columns) = given.shape();
+                return Err(Error::input(format!(
+                    "the proposal's covariance is {rows} x {columns}; \
+                     expected {n} x {n}, one row for each parameter"
+                )));
+            }
             covariance = given.clone();
             log_scale = 0.0;
         }

@@ -17,14 +17,10 @@
 //! and the mean moves to F x + g e / S with the prediction error e.
 
 use super::state::{
-    Follows, Motion, Values, are_same, settles, stationary, sum, values,
+    Follows, Motion, Values, are_same, settles, stationary, sum, sure, values,
 };
 use crate::noise::part::{Lapse, Whole};
 use crate::scalar::{Kind, Real};
-
-/// After how many values in a row that told no more than the one before none
-/// will: a single one may do so by chance.
-const SURE: usize = 2;
 
 /// What is expected of the next value, and what it will tell.
 pub(super) struct Even<K: Kind, const N: usize> {
@@ -83,7 +79,7 @@ impl<K: Kind, const N: usize> Even<K, N> {
 impl<K: Kind, const N: usize> Follows<K> for Even<K, N> {
     #[inline(always)]
     fn expect(&mut self, _: Lapse, _: &Real<K>) -> bool {
-        self.same >= SURE
+        self.same >= sure(N)
     }
 
     #[inline(always)]
@@ -98,7 +94,7 @@ impl<K: Kind, const N: usize> Follows<K> for Even<K, N> {
 
     #[inline(always)]
     fn learn(&mut self, error: &Real<K>) {
-        if self.same < SURE {
+        if self.same < sure(N) {
             self.reflect();
         }
         let mut mean = self.motion.times(&self.mean);

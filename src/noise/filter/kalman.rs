@@ -2,7 +2,7 @@
 //! so far (Kalman 1960).
 
 use super::state::{
-    Follows, Matrix, Motion, Values, are_same, settles, stationary, sum,
+    Follows, Matrix, Motion, Values, are_same, settles, stationary, sum, sure,
     values,
 };
 use crate::noise::part::{Lapse, Whole};
@@ -23,6 +23,8 @@ pub(super) struct Kalman<'w, 'a, K: Kind, const N: usize> {
     /// The variance of the last value's own errors, where nothing changes any
     /// more from value to value as long as that stays.
     steady: Option<Real<K>>,
+    /// How many values in a row were known as well beforehand as the one before.
+    same: usize,
     /// Whether the last value was one of those.
     is_steady: bool,
 }
@@ -59,6 +61,7 @@ impl<'w, 'a, K: Kind, const N: usize> Kalman<'w, 'a, K, N> {
             next: Foreseen { variance: nothing, across: zero },
             gain: zero,
             steady: None,
+            same: 0,
             is_steady: false,
         }
     }
@@ -132,8 +135,9 @@ impl<K: Kind, const N: usize> Follows<K> for Kalman<'_, '_, K, N> {
         self.is_steady = false;
         self.advance(lapse);
         let next = self.foreseen(own);
-        let settled = settles::<K>() && again && next.is_same(&self.next);
-        self.steady = settled.then_some(*own);
+        let same = settles::<K>() && again && next.is_same(&self.next);
+        self.same = if same { self.same + 1 } else { 0 };
+        self.steady = (self.same >= sure(N)).then_some(*own);
         self.next = next;
         false
     }

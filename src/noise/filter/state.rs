@@ -133,6 +133,13 @@ pub(super) fn sum<K: Kind, const N: usize>(
     sum
 }
 
+/// After how many values in a row that told no more than the one before none
+/// will: of a memory of so many states a few may, as where the third counts
+/// alone.
+pub(super) const fn sure(states: usize) -> usize {
+    states + 1
+}
+
 /// Whether it can be seen that nothing changes any more: a tape has its
 /// derivatives later.
 pub(super) const fn settles<K: Kind>() -> bool {

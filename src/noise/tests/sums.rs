@@ -34,7 +34,10 @@ fn summands() -> Vec<Summand> {
             }),
         ),
     ];
-    for phi in [&[0.8][..], &[0.6, -0.3], &[0.4, 0.2, -0.5]] {
+    // Of the last, two values in three tell nothing of the next.
+    let memories =
+        [&[0.8][..], &[0.6, -0.3], &[0.4, 0.2, -0.5], &[0.0, 0.0, 0.8]];
+    for phi in memories {
         let noise = ar(phi, 0.5);
         let c: Vec<f64> =
             noise.coefficients().iter().map(|c| c.value()).collect();

@@ -166,8 +166,8 @@ fn once_each(friction: LawSum) -> Result<LawSum> {
     match twice {
         None => Ok(friction),
         Some((_, name)) => Err(Error::input(format!(
-            "the sum \"{friction}\" has {name:?} twice; expected each law \
-             once: drop one of them"
+            "the sum has {name:?} twice; expected each law once: drop one of \
+             them"
         ))),
     }
 }
