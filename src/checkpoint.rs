@@ -223,7 +223,7 @@ impl Growing {
             return;
         }
         let body = &self.waiting[CHECKED..];
-        let head = (body.len() as u32, check(body));
+        let head = (body.len() as u32, check(&self.head, body));
         self.waiting[..4].copy_from_slice(&head.0.to_le_bytes());
         self.waiting[4..CHECKED].copy_from_slice(&head.1.to_le_bytes());
         self.length = self.append(path, length).ok();
@@ -283,10 +283,11 @@ fn parts(bytes: &[u8]) -> (HashMap<Name, Range<usize>>, usize) {
 
 /// Where the block at a place ends, if it is whole.
 fn block(bytes: &[u8], at: usize) -> Option<usize> {
+    let head = bytes.get(..BEFORE)?;
     let (length, rest) = bytes.get(at..)?.split_first_chunk()?;
     let (sum, rest) = rest.split_first_chunk()?;
     let body = rest.get(..u32::from_le_bytes(*length) as usize)?;
-    let is_whole = u64::from_le_bytes(*sum) == check(body);
+    let is_whole = u64::from_le_bytes(*sum) == check(head, body);
     is_whole.then_some(at + CHECKED + body.len())
 }
 
@@ -299,8 +300,11 @@ fn named(bytes: &[u8], at: usize) -> Option<(Name, Range<usize>)> {
     Some((Name(u128::from_le_bytes(*name)), begin..begin + own.len()))
 }
 
-fn check(body: &[u8]) -> u64 {
+/// The check of a block of the run with such a head: what another run wrote into
+/// the same file meanwhile is none of its own.
+fn check(head: &[u8], body: &[u8]) -> u64 {
     let mut hasher = DefaultHasher::new();
+    hasher.write(head);
     hasher.write(body);
     hasher.finish()
 }
@@ -412,5 +416,26 @@ mod tests {
         let path = Path::new("/dev/null/below/a/file");
         let Ok(run) = Checkpoint::open(path, "a") else { return };
         assert_eq!(run.part("1", || Ok(1.0)).unwrap(), 1.0);
+    }
+
+    #[test]
+    fn what_another_run_wrote_between_is_not_taken() {
+        let path = fresh("between");
+        let [one, other] = ["a", "b"].map(|run| {
+            let checkpoint = Checkpoint::open(&path, run).unwrap();
+            checkpoint.part("7", || Ok(1.0)).unwrap();
+            checkpoint
+        });
+        one.write();
+        other.write();
+        one.part("8", || Ok(2.0)).unwrap();
+        one.write();
+        for run in ["a", "b"] {
+            let again = Checkpoint::open(&path, run).unwrap();
+            let of_b = run == "b";
+            assert_eq!(kept(&again, "7").is_some(), of_b, "{run}");
+            assert_eq!(kept(&again, "8"), None, "{run}");
+        }
+        fs::remove_file(&path).unwrap();
     }
 }

@@ -19,6 +19,8 @@ pub enum Point<'a> {
     Natural(&'a [f64]),
     /// A draw from the prior.
     Prior(&'a mut Rng),
+    /// The same given some values as named; those that are NaN are drawn.
+    PriorGiven(&'a [f64], &'a mut Rng),
     /// The middle of each parameter's support, to learn what there is.
     Middle,
 }

@@ -29,7 +29,10 @@ impl<P: Program> Model for P {
                 (Source::Line { z, along }, Some(z.len()))
             }
             Point::Natural(x) => (Source::Natural { x }, Some(x.len())),
-            Point::Prior(rng) => (Source::Prior { rng }, None),
+            Point::Prior(rng) => (Source::Prior { rng, known: &[] }, None),
+            Point::PriorGiven(known, rng) => {
+                (Source::Prior { rng, known }, None)
+            }
             Point::Middle => (Source::Middle, None),
         };
         let (density, ..) = run::<Plain>(self, source, expected, listener)?;

@@ -285,7 +285,23 @@ impl<'m> Posterior<'m> {
         &self,
         rng: &mut Rng,
     ) -> Result<Option<Vec<f64>>> {
-        let (density, found) = self.places(Point::Prior(rng), true)?;
+        self.placed(Point::Prior(rng))
+    }
+
+    /// The same given some values as named; those that are NaN are drawn.
+    ///
+    /// # Errors
+    /// As [`Posterior::density`].
+    pub(crate) fn draw_place_given(
+        &self,
+        known: &[f64],
+        rng: &mut Rng,
+    ) -> Result<Option<Vec<f64>>> {
+        self.placed(Point::PriorGiven(known, rng))
+    }
+
+    fn placed(&self, point: Point<'_>) -> Result<Option<Vec<f64>>> {
+        let (density, found) = self.places(point, true)?;
         self.check_names(&found.names, &density)?;
         let line = found.line;
         let is_whole = line.len() == self.dimension()

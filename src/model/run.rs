@@ -26,8 +26,8 @@ pub(super) enum Source<'r> {
     Line { z: &'r [f64], along: Along<'r> },
     /// Values as named; outside a support the run is rejected.
     Natural { x: &'r [f64] },
-    /// Draws from the prior.
-    Prior { rng: &'r mut Rng },
+    /// Draws from the prior, given the values that are known and not NaN.
+    Prior { rng: &'r mut Rng, known: &'r [f64] },
     /// The middle of the line for every parameter, however many there are.
     Middle,
 }
@@ -37,7 +37,7 @@ impl Source<'_> {
         match self {
             Self::Line { z, along } => Source::Line { z, along: *along },
             Self::Natural { x } => Source::Natural { x },
-            Self::Prior { rng } => Source::Prior { rng },
+            Self::Prior { rng, known } => Source::Prior { rng, known },
             Self::Middle => Source::Middle,
         }
     }
@@ -186,7 +186,7 @@ impl<'r, K: Kind> Run<'r, K> {
     /// Where draws from the prior come from, if the run makes such.
     pub(super) fn draws_prior(&mut self) -> Option<&mut Rng> {
         match &mut self.source {
-            Source::Prior { rng } => Some(rng),
+            Source::Prior { rng, .. } => Some(rng),
             _ => None,
         }
     }
@@ -271,7 +271,10 @@ impl<'r, K: Kind> Run<'r, K> {
             Source::Natural { x } => {
                 Ok(Real::variable(*x.get(i).ok_or_else(beyond)?, i))
             }
-            Source::Prior { rng } => {
+            Source::Prior { rng, known } => {
+                if let Some(x) = known.get(i).filter(|x| !x.is_nan()) {
+                    return Ok(Real::new(*x));
+                }
                 let draw = prior.draw(rng).ok_or(Stop::Reject(
                     "a prior has no draws: it is improper, or its arguments \
                      are impossible",

@@ -94,9 +94,12 @@ impl<'a> Slice<'a> {
         &self,
         rng: &mut crate::seed::Rng,
     ) -> Result<(Density, Option<Vec<f64>>)> {
+        // Its own prior may depend on what is held.
+        let mut known = self.natural.clone();
+        self.unknown.iter().for_each(|&i| known[i] = f64::NAN);
         let mut collector = Collector::default();
-        let density =
-            self.model.evaluate(Point::Prior(rng), Some(&mut collector))?;
+        let point = Point::PriorGiven(&known, rng);
+        let density = self.model.evaluate(point, Some(&mut collector))?;
         let found = collector.collected.line;
         let whole = found.len() == self.line.len();
         let own = || self.unknown.iter().map(|&i| found[i]).collect();
@@ -116,10 +119,12 @@ impl Model for Slice<'_> {
         let heard = heard.as_mut().map(|l| l as &mut dyn Listener<Plain>);
         let line = match point {
             Point::Line(z) => self.filled(&self.line, z),
-            Point::Prior(rng) => match self.drawn(rng)? {
-                (density, None) => return Ok(density),
-                (_, Some(own)) => self.filled(&self.line, &own),
-            },
+            Point::Prior(rng) | Point::PriorGiven(_, rng) => {
+                match self.drawn(rng)? {
+                    (density, None) => return Ok(density),
+                    (_, Some(own)) => self.filled(&self.line, &own),
+                }
+            }
             Point::Natural(x) => {
                 let natural = self.filled(&self.natural, x);
                 let point = Point::Natural(&natural);

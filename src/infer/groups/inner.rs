@@ -168,7 +168,7 @@ impl<'a> Inner<'a> {
         let mut draws = Vec::with_capacity(INNER);
         for _ in 0..INNER {
             // A draw of the prior that is cut short counts as nothing.
-            let Some(own) = self.draw(&proposal, rng)? else { continue };
+            let Some(own) = self.draw(&proposal, &at, rng)? else { continue };
             self.put(&own, &mut at);
             logs.push(self.log_weight(&proposal, &at, &own, prior)?);
             draws.push(own);
@@ -186,17 +186,22 @@ impl<'a> Inner<'a> {
         Ok(total - (INNER as f64).ln())
     }
 
-    /// Own coordinates from a proposal, or from the prior, so that no place is
-    /// out of reach; `None` for a draw of the prior that is cut short.
+    /// Own coordinates from a proposal, or from the prior given those in common
+    /// of a place, so that no place is out of reach; `None` for a draw of the
+    /// prior that is cut short.
     fn draw(
         &self,
         proposal: &Proposal<'_>,
+        at: &[f64],
         rng: &mut Rng,
     ) -> Result<Option<Vec<f64>>> {
         if rng.random::<f64>() >= proposal.prior_share() {
             return Ok(Some(proposal.draw(rng)));
         }
-        let found = self.group.posterior.draw_place(rng)?;
+        let posterior = self.group.posterior;
+        let mut known = posterior.natural(at)?;
+        self.own.iter().for_each(|&i| known[i] = f64::NAN);
+        let found = posterior.draw_place_given(&known, rng)?;
         Ok(found.map(|line| self.own.iter().map(|&i| line[i]).collect()))
     }
 

@@ -91,3 +91,30 @@ fn one_within_the_other_is_as_all_at_once() {
         }
     });
 }
+
+/// a ~ N(0, 1), and b ~ N(a, 0.1).
+struct Leaning;
+
+impl Program for Leaning {
+    fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
+        let a = AnyPrior::Normal(0.0, 1.0);
+        let a = run.scalar(Label::new("a", "1"), a)?;
+        let near = Normal::new(a, Real::new(0.1));
+        run.scalar(Label::new("b", "1"), near)?;
+        Ok(())
+    }
+}
+
+#[test]
+fn a_prior_that_leans_on_what_is_in_common_is_drawn_given_that() {
+    let posterior = Posterior::new(&Leaning).unwrap();
+    let mut rng = Seed::new(1).rng();
+    for _ in 0..100 {
+        let known = [5.0, f64::NAN];
+        let drawn = posterior.draw_place_given(&known, &mut rng);
+        let line = drawn.unwrap().unwrap();
+        assert_eq!(line[0], 5.0);
+        // Six standard deviations.
+        assert!((line[1] - 5.0).abs() < 0.6, "{line:?}");
+    }
+}
