@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::clock::{Moment, moment};
 use super::log::{Fix, Frame, Log, SpeedKind};
+use super::table::most_odd;
 use crate::error::{Error, Result};
 use crate::io::{MOST_ROWS, place, quoted};
 
@@ -45,7 +46,18 @@ pub(super) fn read(text: &str, path: &Path) -> Result<Log> {
                 .to_owned(),
         ));
     };
-    Ok(log_of(&dated, begin, path, all.tracks.len()))
+    let log = log_of(&dated, begin, path, all.tracks.len());
+    let (lost, most) =
+        (points.len() - log.fixes.len(), most_odd(points.len()));
+    match lost > most {
+        false => Ok(log),
+        true => Err(wrong(format!(
+            "{lost} of {} points have no time after that of the point before; \
+             expected {most} at the most: are its segments in order? Sort it \
+             by time, or cut it to the part that matters",
+            points.len()
+        ))),
+    }
 }
 
 fn time(point: &gpx::Waypoint) -> Option<Moment> {
@@ -137,6 +149,28 @@ mod tests {
         assert!((log.fixes[1].time - 0.5).abs() < 1e-6);
         assert_eq!(log.kind, SpeedKind::Positions);
         assert_eq!(log.moment("--to", "07:00:03").unwrap(), 3.0);
+    }
+
+    #[test]
+    fn segments_in_the_wrong_order_are_refused() {
+        let point = |second: u32| {
+            format!(
+                "<trkpt lat=\"47.0\" lon=\"11.0\">\
+                 <time>2022-02-22T07:00:{second:02}Z</time></trkpt>"
+            )
+        };
+        let points = |range: std::ops::Range<u32>| -> String {
+            range.map(point).collect()
+        };
+        let text = format!(
+            "<gpx version=\"1.1\" creator=\"x\" \
+             xmlns=\"http://www.topografix.com/GPX/1/1\"><trk><trkseg>{}\
+             </trkseg><trkseg>{}</trkseg></trk></gpx>",
+            points(30..60),
+            points(0..30)
+        );
+        let error = read(&text, Path::new("a.gpx")).unwrap_err().to_string();
+        assert!(error.contains("30 of 60 points have no time"), "{error}");
     }
 
     #[test]

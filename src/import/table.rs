@@ -20,6 +20,11 @@ const MOST_ODD: (f64, usize) = (0.1, 10);
 /// The parts of a velocity.
 const WHOLE: [Role; 3] = [Role::North, Role::East, Role::Down];
 
+/// How many of so many rows may be passed over.
+pub(super) fn most_odd(count: usize) -> usize {
+    MOST_ODD.1.max((MOST_ODD.0 * count as f64) as usize)
+}
+
 /// A table being read.
 struct Reader<'r> {
     path: &'r Path,
@@ -410,9 +415,8 @@ impl<'r> Reader<'r> {
                 place(self.path)
             )));
         };
-        let most = MOST_ODD.1.max((MOST_ODD.0 * count as f64) as usize);
         if let Some(first) = rows.back.first()
-            && rows.back.len() > most
+            && rows.back.len() > most_odd(count)
         {
             return Err(at(
                 self.path,

@@ -98,7 +98,7 @@ fn every_sum_of_three_is_the_dense_normal_density() {
     let mut rng = Seed::new(11).rng();
     let all = summands();
     let sums = sums(&all);
-    assert_eq!(sums.len(), 6 + 21 + 56);
+    assert_eq!(sums.len(), 7 + 28 + 84);
     let grids: Vec<Grid> =
         grids().into_iter().chain([uneven(false), uneven(true)]).collect();
     for sum in &sums {
