@@ -283,6 +283,16 @@ impl Arguments {
                 place(&event)
             )));
         }
+        self.refuse_columns(list, &refused)
+    }
+
+    /// The same of the options that a list has in columns.
+    fn refuse_columns(
+        &self,
+        list: &[Listed],
+        refused: &dyn Fn(&[OsString]) -> Option<(ErrorKind, Error)>,
+    ) -> Result<()> {
+        let verb = self.verb.name();
         let mut known = HashSet::new();
         for (at, listed) in list.iter().enumerate() {
             let mut new = at == 0;

@@ -183,9 +183,8 @@ impl Subject<'_> {
         options: &Options,
         seed: Seed,
     ) -> Result<Diagnosis> {
-        let all = &self.all[..];
         let Decision { judged, chosen, verdict, .. } = decision;
-        let row = &table.rows[decision.row];
+        let (row, all) = (&table.rows[decision.row], &self.all[..]);
         let free = self.free_form(*verdict, row)?;
         let after = corrected_model(decision, free.as_ref(), row, all, seed);
         let compared =

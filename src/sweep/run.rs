@@ -72,15 +72,7 @@ pub fn run(
     told: &mut dyn FnMut(&Ran),
 ) -> Result<Ran> {
     let index = Index::without(plan.folder, plan.others())?;
-    let is_open = |task: &&Task| {
-        index.has_failed(&task.key).is_none_or(|f| f && plan.retry)
-    };
-    let mut seen = HashSet::new();
-    let each = tasks.iter().filter(|task| seen.insert(task.key));
-    let mut open: Vec<&Task> = each.filter(is_open).collect();
-    let again = tasks.len() - seen.len();
-    let mut ran = Ran { to_do: open.len(), again, ..Ran::default() };
-    ran.before = tasks.len() - again - open.len();
+    let (mut open, mut ran) = left(tasks, &index, plan.retry);
     told(&ran);
     if open.is_empty() {
         return Ok(ran);
@@ -108,8 +100,24 @@ pub fn run(
         drop(receiver);
         kept
     })?;
-    ran.before = tasks.len() - again - ran.done - ran.failed;
+    ran.before = tasks.len() - ran.again - ran.done - ran.failed;
     Ok(ran)
+}
+
+/// The tasks that are to do, each once, and what there is beside them.
+fn left<'t>(
+    tasks: &'t [Task],
+    index: &Index,
+    retry: bool,
+) -> (Vec<&'t Task>, Ran) {
+    let mut seen = HashSet::new();
+    let each = tasks.iter().filter(|task| seen.insert(task.key));
+    let is_open =
+        |task: &&Task| index.has_failed(&task.key).is_none_or(|f| f && retry);
+    let open: Vec<&Task> = each.filter(is_open).collect();
+    let (to_do, again) = (open.len(), tasks.len() - seen.len());
+    let before = tasks.len() - again - to_do;
+    (open, Ran { to_do, again, before, ..Ran::default() })
 }
 
 impl Plan<'_> {

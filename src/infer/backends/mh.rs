@@ -192,6 +192,17 @@ struct Walk<'p, 'm> {
 /// The acceptance rate aimed at (Roberts, Rosenthal 2001; the paper's 0.25).
 const TARGET_ACCEPTANCE: f64 = 0.25;
 
+/// A covariance of so many parameters.
+fn square(given: &DMatrix<f64>, n: usize) -> Result<DMatrix<f64>> {
+    match given.shape() {
+        shape if shape == (n, n) => Ok(given.clone()),
+        (rows, columns) => Err(Error::input(format!(
+            "the proposal's covariance is {rows} x {columns}; expected {n} x \
+             {n}, one row for each parameter"
+        ))),
+    }
+}
+
 impl<'p, 'm> Walk<'p, 'm> {
     fn new(
         posterior: &'p Posterior<'m>,
@@ -209,14 +220,7 @@ impl<'p, 'm> Walk<'p, 'm> {
         });
         let mut log_scale = best_log_scale(n);
         if let Proposal::Fixed(given) = proposal {
-            if given.shape() != (n, n) {
-                let (rows, columns) = given.shape();
-                return Err(Error::input(format!(
-                    "the proposal's covariance is {rows} x {columns}; \
-                     expected {n} x {n}, one row for each parameter"
-                )));
-            }
-            covariance = given.clone();
+            covariance = square(given, n)?;
             log_scale = 0.0;
         }
         let factor = covariance.clone().cholesky().ok_or_else(|| {
