@@ -133,6 +133,9 @@ struct Planned {
     unread: BTreeMap<usize, String>,
 }
 
+/// What would be refused of some options, and of what kind that is.
+type Refusing<'a> = dyn Fn(&[OsString]) -> Option<(ErrorKind, Error)> + 'a;
+
 impl Arguments {
     pub(super) fn run(&self, laws: &Laws, told: &Told) -> Result<Answer> {
         self.refuse_options()?;
@@ -290,7 +293,7 @@ impl Arguments {
     fn refuse_columns(
         &self,
         list: &[Listed],
-        refused: &dyn Fn(&[OsString]) -> Option<(ErrorKind, Error)>,
+        refused: &Refusing<'_>,
     ) -> Result<()> {
         let verb = self.verb.name();
         let mut known = HashSet::new();
