@@ -47,16 +47,19 @@ pub(super) fn read(text: &str, path: &Path) -> Result<Log> {
         ));
     };
     let log = log_of(&dated, begin, path, all.tracks.len());
-    let (lost, most) =
-        (points.len() - log.fixes.len(), most_odd(points.len()));
+    in_order(log, points.len()).map_err(wrong)
+}
+
+/// Refuses a track of which more points than a few do not go on in time.
+fn in_order(log: Log, points: usize) -> Result<Log, String> {
+    let (lost, most) = (points - log.fixes.len(), most_odd(points));
     match lost > most {
         false => Ok(log),
-        true => Err(wrong(format!(
-            "{lost} of {} points have no time after that of the point before; \
-             expected {most} at the most: are its segments in order? Sort it \
-             by time, or cut it to the part that matters",
-            points.len()
-        ))),
+        true => Err(format!(
+            "{lost} of {points} points have no time after that of the point \
+             before; expected {most} at the most: are its segments in order? \
+             Sort it by time, or cut it to the part that matters"
+        )),
     }
 }
 
