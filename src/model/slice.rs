@@ -96,6 +96,7 @@ impl<'a> Slice<'a> {
     ) -> Result<(Density, Option<Vec<f64>>)> {
         // Its own prior may depend on what is held.
         let mut known = self.natural.clone();
+        known.resize(self.line.len(), f64::NAN);
         self.unknown.iter().for_each(|&i| known[i] = f64::NAN);
         let mut collector = Collector::default();
         let point = Point::PriorGiven(&known, rng);

@@ -199,8 +199,13 @@ impl<'a> Inner<'a> {
             return Ok(Some(proposal.draw(rng)));
         }
         let posterior = self.group.posterior;
+        // A run that is rejected ends before its last own parameters.
         let mut known = posterior.natural(at)?;
+        known.resize(at.len(), f64::NAN);
         self.own.iter().for_each(|&i| known[i] = f64::NAN);
+        if self.held.iter().any(|&i| known[i].is_nan()) {
+            return Ok(None);
+        }
         let found = posterior.draw_place_given(&known, rng)?;
         Ok(found.map(|line| self.own.iter().map(|&i| line[i]).collect()))
     }

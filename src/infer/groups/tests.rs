@@ -118,3 +118,57 @@ fn a_prior_that_leans_on_what_is_in_common_is_drawn_given_that() {
         assert!((line[1] - 5.0).abs() < 0.6, "{line:?}");
     }
 }
+
+/// a ~ N(0, 1); for each of some events b ~ N(0, 1), rejected above 1, then
+/// c ~ N(0, 1), and 0.5 was seen of N(c, 1).
+struct Rejecting(&'static [usize]);
+
+impl Program for Rejecting {
+    fn run<K: Number>(&self, run: &mut Run<'_, K>) -> Outcome {
+        let normal = AnyPrior::Normal(0.0, 1.0);
+        run.scalar(Label::new("a", "1"), normal)?;
+        for &event in self.0 {
+            let b = run.scalar(Label::new("b", "1").at(event), normal)?;
+            if b > 1.0 {
+                return Err(crate::error::Stop::Reject("b is above 1"));
+            }
+            let c = run.scalar(Label::new("c", "1").at(event), normal)?;
+            run.observe_each(&0.5, Normal::new(c, Real::new(1.0)))?;
+        }
+        Ok(())
+    }
+}
+
+#[test]
+fn a_group_that_rejects_before_its_last_parameter_counts_as_nothing_there() {
+    let all = [
+        Rejecting(&[0, 1, 2]),
+        Rejecting(&[]),
+        Rejecting(&[0]),
+        Rejecting(&[1]),
+        Rejecting(&[2]),
+    ];
+    let all = all.each_ref().map(|p| Posterior::new(p).unwrap());
+    let [whole, common, groups @ ..] = &all;
+    let common = Group { posterior: common, places: vec![0] };
+    let places = |i: usize| vec![0, 1 + 2 * i, 2 + 2 * i];
+    let groups = groups.iter().enumerate();
+    let groups =
+        groups.map(|(i, p)| Group { posterior: p, places: places(i) });
+    let groups = groups.collect();
+    let grouped = Grouped { whole, common: None, groups };
+    let laplace = LaplaceMixture::default();
+    let LaplaceMixture { space, schedule } = &laplace;
+    let seed = Seed::new(1);
+    let parts = components(whole, space, schedule, seed.child(0)).unwrap();
+    let effort = laplace.effort(Precision::Sharp);
+    let found = laplace.nested(&grouped, &common, &parts, effort, seed);
+    let found = found.unwrap().evidence.unwrap();
+    // Phi(1) times the density of N(0, sqrt 2) at 0.5, for each.
+    let one = 0.841_344_746_f64.ln()
+        - 0.25 * 0.25
+        - 0.5 * (2.0 * std::f64::consts::TAU).ln();
+    let off = (found.log - 3.0 * one).abs();
+    // Four standard errors of the estimate.
+    assert!(off < 4.0 * found.se && found.se < 0.1, "{found:?} {one}");
+}
