@@ -134,7 +134,6 @@ impl Arguments {
         told: &Told,
         typed: &str,
     ) -> Result<Answer> {
-        self.refuse_one_model()?;
         let files = ["comparison.json"];
         let results = self.output.ready(&files, self.subject.paths())?;
         let found = self.found(laws, told, typed)?;
@@ -155,7 +154,6 @@ impl Arguments {
         laws: &Laws,
         progress: &dyn Progress,
     ) -> Result<Value> {
-        self.refuse_one_model()?;
         self.found(laws, progress, "").map(|found| self.json(&found))
     }
 
@@ -180,6 +178,7 @@ impl Arguments {
         progress: &dyn Progress,
         typed: &str,
     ) -> Result<Found> {
+        self.refuse_one_model()?;
         if self.models.len() < 2 {
             return Err(Error::input(
                 "a comparison needs two models or more: give --model \

@@ -200,6 +200,10 @@ impl Listener<Plain> for Heard<'_> {
         self.listener.block(name);
     }
 
+    fn made(&self) -> Option<f64> {
+        self.listener.made()
+    }
+
     fn scores(&self) -> bool {
         self.listener.scores()
     }

@@ -19,16 +19,14 @@ pub(super) fn of_csv(list: &Path) -> Result<Vec<(PathBuf, Vec<OsString>)>> {
     let mut reader =
         ReaderBuilder::new().trim(Trim::All).from_path(list).map_err(wrong)?;
     let head = reader.headers().map_err(wrong)?.clone();
-    let twice = head.iter().enumerate();
-    let twice =
-        twice.filter(|(i, name)| head.iter().take(*i).any(|n| n == *name));
-    if let Some((_, name)) = twice.map(|(i, name)| (i, name.to_owned())).next()
-    {
+    let is_again =
+        |(i, name): &(usize, &str)| head.iter().take(*i).any(|n| n == *name);
+    if let Some((_, name)) = head.iter().enumerate().find(is_again) {
         return Err(Error::input(format!(
             "{}:1: two columns are called {}; expected each once: drop or \
              rename one",
             place(list),
-            quoted(&name)
+            quoted(name)
         )));
     }
     if !head.iter().any(|name| name == EVENT) {
